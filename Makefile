@@ -1,0 +1,40 @@
+# make demo: train briefly, export, read a photograph.  make test: everything that must pass.
+PYTHON ?= $(or $(shell command -v python3.11),python3)
+BIN := .venv/bin
+READY := .venv/.ready
+
+.PHONY: demo test lint format bench wheel clean
+
+demo: $(READY)
+	$(BIN)/python -m train fit --config configs/quick.yaml
+	$(BIN)/python -m export runs/quick/best.ckpt -o runs/quick/skin.onnx
+	$(BIN)/python -m examples.astronaut
+
+test: $(READY)
+	$(BIN)/python -m pytest
+
+lint: $(READY)
+	$(BIN)/ruff check .
+	$(BIN)/ruff format --check .
+	$(BIN)/mypy
+
+format: $(READY)
+	$(BIN)/ruff check --fix .
+	$(BIN)/ruff format .
+
+bench: $(READY)
+	$(BIN)/python -m benchmarks.spectra
+	$(BIN)/python -m benchmarks.decoder
+	$(BIN)/python -m benchmarks.latency
+
+wheel: $(READY)
+	$(BIN)/python -m build --wheel
+
+clean:
+	rm -rf .venv build dist
+
+# The constraints hold the tested versions; without them a package that needs torch may bring CUDA.
+$(READY): pyproject.toml constraints.txt
+	$(PYTHON) -m venv .venv
+	$(BIN)/python -m pip install --quiet -c constraints.txt -e ".[dev]"
+	touch $(READY)

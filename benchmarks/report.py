@@ -1,0 +1,32 @@
+"""What a benchmark found, as a short table or as one JSON object."""
+
+import argparse
+import json
+from collections.abc import Callable, Iterator, Mapping
+from typing import Any
+
+Results = dict[str, Any]
+
+
+def main(measure: Callable[[], Results], description: str) -> None:
+    """Measures, then prints a table, or with `--json` one object."""
+    parser = argparse.ArgumentParser(description=description)
+    parser.add_argument("--json", action="store_true", help="print one JSON object")
+    as_json = parser.parse_args().json
+    results = measure()
+    print(json.dumps(results) if as_json else table(results))
+
+
+def table(results: Mapping[str, Any]) -> str:
+    """Gives one line a number, its path on the left."""
+    lines = list(_lines(results))
+    width = max(len(name) for name, _ in lines)
+    return "\n".join(f"{name:{width}}  {value}" for name, value in lines)
+
+
+def _lines(results: Mapping[str, Any], prefix: str = "") -> Iterator[tuple[str, str]]:
+    for name, value in results.items():
+        if isinstance(value, Mapping):
+            yield from _lines(value, f"{prefix}{name}.")
+        else:
+            yield prefix + name, f"{value:.4g}" if isinstance(value, float) else str(value)

@@ -1,0 +1,1 @@
+"""Export of trained models; onnx and onnxscript live here and nowhere else."""

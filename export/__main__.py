@@ -1,0 +1,66 @@
+"""`python -m export CHECKPOINT -o skin.onnx`."""
+
+import argparse
+import sys
+from collections.abc import Sequence
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from skinnet.errors import InputError
+
+if TYPE_CHECKING:
+    from skinnet.autoencoder import SkinAutoencoder
+
+
+def main(arguments: Sequence[str] | None = None) -> int:
+    """Export a checkpoint; 0 on success, 2 with a sentence on stderr for bad input."""
+    parser = argparse.ArgumentParser(
+        prog="python -m export",
+        description="Write a checkpoint as ONNX, compared with torch: the encoder to FILE, and "
+        "beside it the decoder, .decoder.onnx, and the weights, .safetensors.",
+    )
+    parser.add_argument("checkpoint", type=Path, help="a .ckpt of training, or .safetensors")
+    parser.add_argument("-o", "--output", type=Path, default=Path("skin.onnx"), metavar="FILE")
+    options = parser.parse_args(arguments)
+    try:
+        _export(options.checkpoint, options.output)
+    except (InputError, OSError) as error:
+        print(f"export: {error}", file=sys.stderr)
+        return 2
+    return 0
+
+
+def _export(checkpoint: Path, output: Path) -> None:
+    # Imported here, so that --help does not wait for torch.
+    from export.onnx_file import SIZES, export_model
+    from skinnet.weights import save_weights
+
+    if output.suffix != ".onnx":
+        raise InputError(f"{output} does not end in .onnx; name the file that is to be written.")
+    if not output.parent.is_dir():
+        raise InputError(f"{output.parent} is not a folder; make it first.")
+    model, trained_on = _load(checkpoint)
+    reports = export_model(model, output, trained_on)
+    save_weights(model, output.with_suffix(".safetensors"), trained_on)
+    sizes = ", ".join("x".join(map(str, size)) for size in SIZES)
+    print(f"compared with torch at {sizes} (batch x height x width)")
+    for report in reports:
+        name, worst = max(report.difference.items(), key=lambda item: item[1])
+        print(
+            f"{report.path}: {report.megabytes:.2f} MB, largest difference {worst:.1e} of "
+            f"the range ({name}), "
+            f"{report.milliseconds:.0f} ms at 256 x 256"
+        )
+
+
+def _load(path: Path) -> "tuple[SkinAutoencoder, str]":
+    from skinnet.checkpoint import load_checkpoint
+    from skinnet.weights import load_weights, read_weights
+
+    if path.suffix == ".safetensors":
+        return load_weights(path), read_weights(path)[0]["skinnet.trained_on"]
+    return load_checkpoint(path)
+
+
+if __name__ == "__main__":
+    sys.exit(main())

@@ -1,0 +1,78 @@
+"""The two graphs that are exported, with their named inputs and outputs."""
+
+from typing import Any
+
+import torch
+from torch import Tensor, nn
+
+from skinnet.autoencoder import (
+    CAMERA_MAX,
+    F_BLOOD_MAX,
+    F_MEL_MAX,
+    SHADING_MAX,
+    WHITE_BALANCE_MAX,
+    SkinAutoencoder,
+)
+from skinnet.capture import Capture
+from skinnet.decoder import SkinDecoder, srgb
+
+Output = dict[str, Any]
+
+
+def _output(unit: str, low: float, high: float, description: str) -> Output:
+    return {"unit": unit, "range": [low, high], "description": description}
+
+
+OUTPUTS: dict[str, Output] = {
+    "melanin": _output("volume fraction", 0, F_MEL_MAX, "melanosomes in the epidermis"),
+    "hemoglobin": _output("volume fraction", 0, F_BLOOD_MAX, "blood in the papillary dermis"),
+    "shading": _output("relative to the light", 0, SHADING_MAX, "diffuse shading of skin"),
+    "specular": _output("relative to the light", 0, 1, "specular reflection of skin"),
+    "offset": _output("linear sRGB", -1, 1, "what skin does not explain"),
+    "mask": _output("probability", 0, 1, "that a pixel is skin"),
+    "light": _output("weight", 0, 1, "convex mixture of the lights named in skinnet.lights"),
+    "temperature": _output("K", 4000, 25000, "of the daylight among the lights"),
+    "camera": _output("standard deviation", -CAMERA_MAX, CAMERA_MAX, "camera basis coefficients"),
+    "white_balance": _output(
+        "natural logarithm", -WHITE_BALANCE_MAX, WHITE_BALANCE_MAX, "error in R/G and in B/G"
+    ),
+}
+DECODED: dict[str, Output] = {
+    "image": _output("display sRGB", 0, 1, "the photograph that the maps make")
+}
+PIXELS = ("melanin", "hemoglobin", "shading", "specular", "offset")
+
+
+class EncoderGraph(nn.Module):
+    """uint8 sRGB [batch, height, width, 3] to the ten `OUTPUTS`, channels last."""
+
+    def __init__(self, model: SkinAutoencoder):
+        super().__init__()
+        self.model = model
+
+    def forward(self, image: Tensor) -> tuple[Tensor, ...]:
+        maps, capture = self.model.encode(image.movedim(-1, 1).float() / 255)
+        named = {**maps._asdict(), **capture._asdict(), "offset": maps.offset.movedim(1, -1)}
+        return tuple(named[name] for name in OUTPUTS)
+
+
+class DecoderGraph(nn.Module):
+    """The outputs of `EncoderGraph` but for the mask to display sRGB, channels last."""
+
+    def __init__(self, decoder: SkinDecoder):
+        super().__init__()
+        self.decoder = decoder
+
+    def forward(
+        self, melanin: Tensor, hemoglobin: Tensor, shading: Tensor, specular: Tensor,
+        offset: Tensor, light: Tensor, temperature: Tensor, camera: Tensor, white_balance: Tensor,
+    ) -> Tensor:  # fmt: skip
+        capture = Capture(light, temperature, camera, white_balance)
+        maps = (melanin, hemoglobin, shading, specular, offset.movedim(-1, 1))
+        return srgb(self.decoder.compose(*maps, capture)).movedim(1, -1)
+
+
+def example(model: SkinAutoencoder, batch: int, height: int, width: int) -> Tensor:
+    """A noise photograph of that size, the same on every run."""
+    lot = torch.Generator().manual_seed(height * 10_000 + width)
+    return torch.randint(0, 256, (batch, height, width, 3), generator=lot, dtype=torch.uint8)

@@ -1,0 +1,169 @@
+"""Writing ONNX files that say what they are, and comparing them with torch."""
+
+import json
+import logging
+import time
+import warnings
+from collections.abc import Iterator
+from contextlib import contextmanager
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+import onnx
+import onnxruntime
+import torch
+from torch import Tensor, nn
+from torch.export import Dim
+
+from export.graphs import DECODED, OUTPUTS, PIXELS, DecoderGraph, EncoderGraph, Output, example
+from skinnet import __version__
+from skinnet.autoencoder import SkinAutoencoder
+from skinnet.camera import LIGHTS
+from skinnet.errors import InputError
+
+OPSET = 20
+FORMAT = "1"
+LICENSE = "MIT"
+SIZES = ((1, 64, 64), (2, 97, 65), (1, 128, 128), (3, 33, 201), (1, 256, 256))
+
+
+@dataclass(frozen=True)
+class Report:
+    """What an exported file was found to be; differences are in parts of an output's range."""
+
+    path: Path
+    megabytes: float
+    difference: dict[str, float]
+    milliseconds: float
+
+
+def export_model(model: SkinAutoencoder, path: Path, trained_on: str) -> list[Report]:
+    """Write the encoder to `path` and the decoder beside it, each compared with torch.
+
+    Raises `InputError` if a file differs from torch by more than 1e-3 of an output's range; then
+    neither is written.
+    """
+    model = model.eval()
+    photograph = example(model, 2, 64, 80)
+    maps = EncoderGraph(model)(photograph)
+    decoder_inputs = {k: v for k, v in zip(OUTPUTS, maps, strict=True) if k != "mask"}
+    jobs = [
+        ("encoder", EncoderGraph(model), {"image": photograph}, OUTPUTS, path),
+        ("decoder", DecoderGraph(model.decoder), decoder_inputs, DECODED, decoder_path(path)),
+    ]
+    written = []
+    try:
+        for kind, graph, inputs, outputs, target in jobs:
+            beside = target.with_name(f".{target.name}.part")
+            written.append((beside, target))
+            _write(graph, inputs, outputs, beside)
+            _describe(beside, kind, model, outputs, trained_on)
+        reports = [_compare(model, *pair) for pair in written]
+        for beside, target in written:
+            beside.replace(target)
+        return reports
+    finally:
+        for beside, _ in written:
+            beside.unlink(missing_ok=True)
+
+
+def decoder_path(path: Path) -> Path:
+    """Where the decoder of an encoder file lies."""
+    return path.with_suffix(".decoder.onnx")
+
+
+def _write(
+    graph: nn.Module, inputs: dict[str, Tensor], outputs: dict[str, Output], path: Path
+) -> None:
+    batch, height, width = Dim("batch"), Dim("height"), Dim("width")
+    pixels = {0: batch, 1: height, 2: width}
+    shapes = {name: pixels if name in (*PIXELS, "image") else {0: batch} for name in inputs}
+    with _quiet():
+        program = torch.onnx.export(
+            graph.eval(),
+            tuple(inputs.values()),
+            dynamo=True,
+            opset_version=OPSET,
+            input_names=list(inputs),
+            output_names=list(outputs),
+            dynamic_shapes=shapes,
+            external_data=False,
+            verbose=False,
+        )
+        assert program is not None
+        program.save(path, external_data=False)
+
+
+@contextmanager
+def _quiet() -> Iterator[None]:
+    """Without the exporter's remarks on torchvision, its own deprecations and repeated axes."""
+    logger = logging.getLogger("torch.onnx")
+    level = logger.level
+    logger.setLevel(logging.ERROR)
+    try:
+        with warnings.catch_warnings():
+            warnings.simplefilter("ignore")
+            yield
+    finally:
+        logger.setLevel(level)
+
+
+def _describe(
+    path: Path, kind: str, model: SkinAutoencoder, outputs: dict[str, Output], trained_on: str
+) -> None:
+    file = onnx.load(path)
+    metadata = {
+        "skinnet.kind": kind,
+        "skinnet.format": FORMAT,
+        "skinnet.version": __version__,
+        "skinnet.outputs": json.dumps(outputs),
+        "skinnet.lights": json.dumps(LIGHTS),
+        "skinnet.optics": model.config.optics,
+        "skinnet.working_size": str(model.config.working_size),
+        "skinnet.trained_on": trained_on,
+        "skinnet.license": LICENSE,
+    }
+    onnx.helper.set_model_props(file, metadata)
+    for node in (file.graph, *file.graph.node, *file.graph.value_info):
+        # The exporter notes where each node came from: a quarter of a small file, with local paths.
+        node.ClearField("metadata_props")
+        node.ClearField("doc_string")
+    onnx.save(file, path)
+
+
+def _compare(model: SkinAutoencoder, beside: Path, target: Path) -> Report:
+    options = onnxruntime.SessionOptions()
+    session = onnxruntime.InferenceSession(beside, options, providers=["CPUExecutionProvider"])
+    outputs = OUTPUTS if len(session.get_inputs()) == 1 else DECODED
+    worst = dict.fromkeys(outputs, 0.0)
+    for size in SIZES:
+        found, expected, elapsed = _run_both(model, session, size)
+        for name, a, b in zip(outputs, found, expected, strict=True):
+            low, high = outputs[name]["range"]
+            worst[name] = max(worst[name], float(np.abs(a - b).max()) / (high - low))
+    for name, difference in worst.items():
+        if not difference <= 1e-3:
+            raise InputError(
+                f"{target} was not written: its {name} differs from torch by {difference:.2g} of "
+                "its range. "
+                "Try the versions in constraints.txt."
+            )
+    return Report(target, beside.stat().st_size / 1e6, worst, elapsed * 1e3)
+
+
+@torch.no_grad()
+def _run_both(
+    model: SkinAutoencoder, session: onnxruntime.InferenceSession, size: tuple[int, int, int]
+) -> tuple[list[np.ndarray], list[np.ndarray], float]:
+    photograph = example(model, *size)
+    expected: tuple[Tensor, ...] = EncoderGraph(model)(photograph)
+    inputs = {"image": photograph}
+    if len(session.get_inputs()) > 1:
+        named = dict(zip(OUTPUTS, expected, strict=True))
+        inputs = {name: value for name, value in named.items() if name != "mask"}
+        expected = (DecoderGraph(model.decoder)(**inputs),)
+    feed = {name: value.contiguous().numpy() for name, value in inputs.items()}
+    started = time.perf_counter()
+    found = session.run(None, feed)
+    return found, [value.numpy() for value in expected], time.perf_counter() - started

@@ -1,0 +1,63 @@
+"""Checkpoints of training: what in them is ours, and reading them without running anything."""
+
+import pickle
+from pathlib import Path
+from typing import Any
+
+import torch
+
+from skinnet import __version__
+from skinnet.autoencoder import AutoencoderConfig, SkinAutoencoder
+from skinnet.errors import InputError
+
+FORMAT = 1
+_PREFIX = "model."
+
+
+def describe(config: AutoencoderConfig, trained_on: str) -> dict[str, Any]:
+    """The entry `skinnet` of a checkpoint, in primitives."""
+    return {
+        "format": FORMAT,
+        "version": __version__,
+        "optics": config.optics,
+        "widths": list(config.widths),
+        "working_size": config.working_size,
+        "trained_on": trained_on,
+    }
+
+
+def read_checkpoint(path: str | Path) -> dict[str, Any]:
+    """A checkpoint, loaded with `weights_only`.
+
+    Raises `InputError` for a file that is missing, truncated, not ours or of another version.
+    """
+    if not Path(path).is_file():
+        raise InputError(f"{path} is not a checkpoint file; give one, such as RUN/best.ckpt.")
+    try:
+        checkpoint = torch.load(path, map_location="cpu", weights_only=True)
+    except (RuntimeError, EOFError, pickle.UnpicklingError, OSError, ValueError) as error:
+        raise InputError(f"{path} is no complete checkpoint; train it again.") from error
+    note = checkpoint.get("skinnet") if isinstance(checkpoint, dict) else None
+    if not isinstance(note, dict):
+        raise InputError(f"{path} is not a checkpoint of skinnet; something else wrote it.")
+    if note["format"] != FORMAT:
+        raise InputError(
+            f"{path} has format {note['format']}, this skinnet reads {FORMAT}; it was written by "
+            f"version {note['version']}."
+        )
+    return dict(checkpoint)
+
+
+def load_checkpoint(path: str | Path) -> tuple[SkinAutoencoder, str]:
+    """The model of a checkpoint, in evaluation mode, and what it was trained on."""
+    checkpoint = read_checkpoint(path)
+    note = checkpoint["skinnet"]
+    config = AutoencoderConfig(note["optics"], tuple(note["widths"]), note["working_size"])
+    model = SkinAutoencoder(config)
+    entries = checkpoint["state_dict"].items()
+    state = {name.removeprefix(_PREFIX): v for name, v in entries if name.startswith(_PREFIX)}
+    try:
+        model.load_state_dict(state)
+    except RuntimeError as error:
+        raise InputError(f"{path} does not hold the model that it describes.") from error
+    return model.eval(), note["trained_on"]

@@ -1,0 +1,207 @@
+"""The `skinnet` command. What is heavy to import is imported by the verb that needs it."""
+
+import argparse
+import json
+import os
+import sys
+from collections.abc import Iterator, Sequence
+from io import BufferedIOBase
+from pathlib import Path
+from typing import TYPE_CHECKING, BinaryIO
+
+from skinnet import __version__
+from skinnet.errors import InputError
+
+if TYPE_CHECKING:
+    from skinnet.runtime import Decomposer
+
+OK, UNREAD, BAD_INPUT, INTERRUPTED = 0, 1, 2, 130
+STDIN = "-"
+
+
+def main(argv: Sequence[str] | None = None) -> int:
+    """Run one verb; the exit code is 0, 2 for bad input, or 130 after Ctrl-C."""
+    parser = argparse.ArgumentParser(
+        prog="skinnet", description="Reads a photograph as skin: melanin and hemoglobin."
+    )
+    parser.add_argument("--version", action="version", version=f"skinnet {__version__}")
+    verbs = parser.add_subparsers(title="verbs", required=True, metavar="VERB")
+    for add in (_add_predict, _add_edit):
+        add(verbs)
+    options = parser.parse_args(argv)
+    try:
+        code: int = options.run(options)
+    except BrokenPipeError:
+        # Nobody reads on; Python would complain when it flushes at its end.
+        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+        return UNREAD
+    except (InputError, OSError) as error:
+        return _report(error)
+    except KeyboardInterrupt:
+        return INTERRUPTED
+    return code
+
+
+def _add_predict(verbs: "argparse._SubParsersAction[argparse.ArgumentParser]") -> None:
+    verb = verbs.add_parser("predict", help="photographs to maps, a panel and numbers")
+    verb.add_argument(
+        "input", nargs="+", help="photographs, a folder of them, or - for standard input"
+    )
+    verb.add_argument(
+        "-o", "--output", type=Path, metavar="DIR", help="default: skinnet/ beside the photograph"
+    )
+    verb.add_argument("--json", action="store_true", help="print the numbers, one object a line")
+    _add_common(verb)
+    verb.set_defaults(run=predict)
+
+
+def _add_edit(verbs: "argparse._SubParsersAction[argparse.ArgumentParser]") -> None:
+    verb = verbs.add_parser("edit", help="multiply the pigments of a photograph")
+    verb.add_argument("input", help="a photograph, or - for standard input")
+    verb.add_argument(
+        "-o",
+        "--output",
+        type=Path,
+        metavar="FILE",
+        help=".png or .jpg; default: INPUT_edited.png. JPEG changes every pixel a little",
+    )
+    for pigment in ("melanin", "hemoglobin"):
+        verb.add_argument(f"--{pigment}", type=float, default=1.0, metavar="X", help="factor, 0-10")
+    _add_common(verb)
+    verb.set_defaults(run=edit)
+
+
+def _add_common(verb: argparse.ArgumentParser) -> None:
+    verb.add_argument(
+        "--model", type=Path, metavar="FILE", help="encoder, X.onnx, with X.decoder.onnx beside it"
+    )
+    verb.add_argument("--whole-image", action="store_true", help="do not look for a face")
+
+
+def predict(options: argparse.Namespace) -> int:
+    """Decompose every input; report the bad ones and go on. 2 if any was bad."""
+    from skinnet.runtime import Decomposer
+
+    decomposer = Decomposer(options.model)
+    decomposer.load()
+    code = OK
+    taken: set[tuple[Path, str]] = set()
+    for source in _photographs(options.input):
+        try:
+            if isinstance(source, InputError):
+                raise source
+            folder, stem = _place(source, options.output, taken)
+            _predict_one(decomposer, source, folder, stem, options)
+        except InputError as error:
+            code = _report(error)
+    return code
+
+
+def _predict_one(
+    decomposer: "Decomposer", source: str, folder: Path, stem: str, options: argparse.Namespace
+) -> None:
+    from skinnet.images import read_photo
+    from skinnet.results import write_results
+
+    photo = read_photo(_readable(source), _name(source))
+    decomposition = decomposer(photo, options.whole_image, _name(source))
+    summary = {"file": _name(source)} | decomposition.summary()
+    count = write_results(folder, stem, photo, decomposition, summary)
+    if options.json:
+        _say(json.dumps(summary, allow_nan=False))
+        return
+    written = f"{count} files: {folder / stem}_*.png and {folder / stem}.json"
+    mean = {name: summary["maps"][name]["mean"] for name in ("melanin", "hemoglobin")}
+    if mean["melanin"] is None:
+        _say(f"{_name(source)}: no skin was found; {written}")
+        return
+    numbers = ", ".join(f"{name} {value:.3g}" for name, value in mean.items())
+    _say(f"{_name(source)}: {numbers} over {summary['skin_share']:.0%} of the box; {written}")
+
+
+def edit(options: argparse.Namespace) -> int:
+    """Write one photograph with its pigments multiplied."""
+    from skinnet.images import read_photo
+    from skinnet.results import check_suffix, write_picture
+    from skinnet.runtime import Decomposer
+
+    source: str = options.input
+    target: Path = options.output or _beside(source).parent / f"{_stem(source)}_edited.png"
+    check_suffix(target)
+    if source != STDIN and target.exists() and Path(source).exists() and target.samefile(source):
+        raise InputError(f"{target} is the photograph itself; choose another file with -o.")
+    decomposer = Decomposer(options.model)
+    photo = read_photo(_readable(source), _name(source))
+    edited = decomposer.edit(
+        photo, options.melanin, options.hemoglobin, options.whole_image, _name(source)
+    )
+    write_picture(target, edited)
+    _say(f"{_name(source)}: {target}")
+    return OK
+
+
+def _photographs(inputs: Sequence[str]) -> Iterator[str | InputError]:
+    """Each photograph, a folder's in the order of their names, and an error for a bad folder."""
+    for source in inputs:
+        try:
+            if source != STDIN and Path(source).is_dir():
+                yield from _inside(Path(source))
+            else:
+                yield source
+        except OSError as error:
+            yield InputError(f"{source} cannot be read ({error.strerror}); check the path.")
+
+
+def _inside(folder: Path) -> list[str | InputError]:
+    from skinnet.images import SUFFIXES
+
+    shown = (file for file in sorted(folder.iterdir()) if not file.name.startswith("."))
+    found = [str(file) for file in shown if file.suffix.lower() in SUFFIXES and file.is_file()]
+    suffixes = ", ".join(sorted(SUFFIXES))
+    return [*found] or [
+        InputError(f"The folder {folder} holds no photographs; they end in {suffixes}.")
+    ]
+
+
+def _place(source: str, output: Path | None, taken: set[tuple[Path, str]]) -> tuple[Path, str]:
+    """Folder and stem of a photograph's files, the stem counted on if this run has used it."""
+    folder = output or _beside(source).parent / "skinnet"
+    stem = _stem(source)
+    number = 1
+    while (folder, stem.casefold()) in taken:
+        number += 1
+        stem = f"{_stem(source)}-{number}"
+    taken.add((folder, stem.casefold()))
+    return folder, stem
+
+
+def _beside(source: str) -> Path:
+    return Path("stdin" if source == STDIN else source)
+
+
+def _stem(source: str) -> str:
+    return _beside(source).stem
+
+
+def _name(source: str) -> str:
+    return "standard input" if source == STDIN else source
+
+
+def _readable(source: str) -> str | BinaryIO | BufferedIOBase:
+    return sys.stdin.buffer if source == STDIN else source
+
+
+def _say(text: str) -> None:
+    """Print a line; characters that the terminal or the pipe cannot take are written as escapes."""
+    encoding = sys.stdout.encoding or "utf-8"
+    print(text.encode(encoding, "backslashreplace").decode(encoding), flush=True)
+
+
+def _report(error: Exception) -> int:
+    sentence = str(error)
+    if isinstance(error, OSError):
+        sentence = (
+            f"{error.filename or 'A file'} cannot be used ({error.strerror}); check the path."
+        )
+    print(f"skinnet: {sentence}", file=sys.stderr)
+    return BAD_INPUT

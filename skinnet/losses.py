@@ -1,0 +1,100 @@
+"""Losses of the autoencoder, each a mean over the photographs of a batch.
+
+Images are linear sRGB [batch, 3, height, width], maps [batch, height, width], and a mask holds the
+probability that a pixel is skin.
+"""
+
+import torch.nn.functional as F
+from jaxtyping import Float
+from kornia.color import rgb_to_grayscale
+from kornia.filters import gaussian_blur2d, spatial_gradient
+from torch import Tensor
+
+from skinnet.autoencoder import F_BLOOD_MAX, F_MEL_MAX, SkinMaps
+from skinnet.capture import Capture
+
+Image = Float[Tensor, "batch 3 height width"]
+Map = Float[Tensor, "batch height width"]
+Scalar = Float[Tensor, ""]
+
+WHITE_BALANCE_SD = 0.05
+"""Spread of the errors of a camera's white balance in log R/G and log B/G."""
+
+_DARKEST = 1e-3
+
+
+def appearance(reconstruction: Image, photograph: Image, weight: Map) -> Scalar:
+    """Mean absolute difference in linear sRGB, each pixel weighted."""
+    return _mean((reconstruction - photograph).abs().mean(1), weight)
+
+
+def camera_prior(capture: Capture) -> Scalar:
+    """Negative log likelihood of the camera and its white balance under their normal spread."""
+    balance = (capture.white_balance / WHITE_BALANCE_SD) ** 2
+    return (capture.camera**2).mean() / 2 + balance.mean() / 2
+
+
+def specular_sparsity(maps: SkinMaps, mask: Map) -> Scalar:
+    """Mean specular on skin (an L1 prior: highlights are rare, not absent)."""
+    return _mean(maps.specular, mask)
+
+
+def shading_smoothness(maps: SkinMaps, mask: Map) -> Scalar:
+    """Mean absolute gradient of log shading on skin, per pixel."""
+    log = maps.shading.clamp_min(_DARKEST).log()
+    gradient = spatial_gradient(log[:, None], mode="diff")
+    return _mean(gradient.abs().sum(2)[:, 0], mask)
+
+
+def shading_pseudo(maps: SkinMaps, photograph: Image, mask: Map) -> Scalar:
+    """Log shading against the log of the photograph's smoothed luminance, each less its mean.
+
+    Where there is no true shading its low frequencies are those of luminance on skin of one colour;
+    its level is left open, since exposure and albedo trade against it.
+    """
+    size = 2 * (min(mask.shape[-2:]) // 16) + 1
+    light = gaussian_blur2d(rgb_to_grayscale(photograph), size, (size / 4, size / 4))[:, 0]
+    difference = maps.shading.clamp_min(_DARKEST).log() - light.clamp_min(_DARKEST).log()
+    level = (difference * mask).sum((-2, -1)) / mask.sum((-2, -1)).clamp_min(1)
+    return _mean((difference - level[:, None, None]).abs(), mask)
+
+
+def offset_penalty(maps: SkinMaps, mask: Map) -> Scalar:
+    """Offset on skin and shaded skin elsewhere: skin is explained by skin, and nothing else is."""
+    return (maps.offset.abs().mean(1) * mask + maps.shading * (1 - mask)).mean()
+
+
+def skin_mask(maps: SkinMaps, mask: Map) -> Scalar:
+    """Cross entropy of the skin mask."""
+    return F.binary_cross_entropy(maps.mask.clamp(1e-6, 1 - 1e-6), mask)
+
+
+def pigments(maps: SkinMaps, truth: SkinMaps) -> Scalar:
+    """Mean absolute error of both pigments on true skin, in cube roots of their range.
+
+    Even steps there are about even steps of colour; in fractions, dark skin alone would count.
+    """
+    melanin = _root(maps.melanin, F_MEL_MAX) - _root(truth.melanin, F_MEL_MAX)
+    blood = _root(maps.hemoglobin, F_BLOOD_MAX) - _root(truth.hemoglobin, F_BLOOD_MAX)
+    return _mean(melanin.abs() + blood.abs(), truth.mask)
+
+
+def lighting(maps: SkinMaps, truth: SkinMaps) -> Scalar:
+    """Mean absolute error of shading, specular and offset."""
+    offset = (maps.offset - truth.offset).abs().mean(1)
+    specular = (maps.specular - truth.specular).abs()
+    return (offset + specular + (maps.shading - truth.shading).abs()).mean()
+
+
+def white_balance(capture: Capture, truth: Capture) -> Scalar:
+    """Mean absolute error of the white balance in units of its spread."""
+    return (capture.white_balance - truth.white_balance).abs().mean() / WHITE_BALANCE_SD
+
+
+def _root(fraction: Map, largest: float) -> Map:
+    # Zero has no slope under a cube root.
+    return (fraction / largest).clamp_min(1e-6) ** (1 / 3)
+
+
+def _mean(value: Map, weight: Map) -> Scalar:
+    return (value * weight).sum() / weight.sum().clamp_min(1)

@@ -1,0 +1,115 @@
+"""A face of our own making: a star-shaped head with bumps for its features.
+
+Every direction from the middle of the head has one radius, so a point is found from its direction,
+and a chart in azimuth and elevation covers the face without a seam. Lengths are in half heads:
+crown and chin lie one unit above and below the eyes. x points to the face's left, y up, z forward.
+"""
+
+from typing import NamedTuple
+
+import torch
+import torch.nn.functional as F
+from jaxtyping import Float
+from torch import Tensor
+
+CHART = (2.0, 1.5)
+"""Largest azimuth and elevation of the chart, in radians."""
+
+# Azimuth and elevation, their widths (radians), and height (half heads). A feature off the middle
+# stands on both sides.
+BUMPS: dict[str, tuple[float, float, float, float, float]] = {
+    "bridge": (0.0, -0.10, 0.09, 0.20, 0.09),
+    "tip": (0.0, -0.33, 0.11, 0.10, 0.19),
+    "wing": (0.12, -0.38, 0.06, 0.06, 0.06),
+    "brow": (0.28, 0.17, 0.20, 0.07, 0.03),
+    "socket": (0.34, 0.02, 0.14, 0.09, -0.05),
+    "eyeball": (0.34, 0.01, 0.09, 0.06, 0.025),
+    "cheek": (0.48, -0.28, 0.20, 0.16, 0.03),
+    "upper_lip": (0.0, -0.60, 0.19, 0.045, 0.035),
+    "mouth": (0.0, -0.66, 0.20, 0.02, -0.025),
+    "lower_lip": (0.0, -0.72, 0.17, 0.05, 0.035),
+    "chin": (0.0, -1.02, 0.25, 0.14, 0.07),
+    "jaw": (0.75, -0.85, 0.25, 0.20, 0.03),
+    "ear": (1.50, -0.08, 0.10, 0.20, 0.10),
+}
+
+AXES = (0.69, 1.0, 0.90)
+ROUNDNESS = 2.6
+IDENTITY = len(BUMPS) * 3 + len(AXES) + 1
+
+
+class Surface(NamedTuple):
+    """A head over the chart: radius and unit normals in the head's own axes."""
+
+    radius: Float[Tensor, "batch 1 rows columns"]
+    normal: Float[Tensor, "batch 3 rows columns"]
+
+
+def chart(rows: int, columns: int) -> tuple[Float[Tensor, "1 columns"], Float[Tensor, "rows 1"]]:
+    """Azimuth and elevation in radians of the chart's texels; the first row is the top."""
+    azimuth = torch.linspace(-CHART[0], CHART[0], columns)[None, :]
+    elevation = torch.linspace(CHART[1], -CHART[1], rows)[:, None]
+    return azimuth, elevation
+
+
+def relief(
+    identity: Float[Tensor, "batch identity"], rows: int, columns: int
+) -> Float[Tensor, "batch 1 rows columns"]:
+    """Radius of bald heads; `identity` holds standard normal numbers [batch, 43], zero the mean."""
+    azimuth, elevation = (axis.to(identity) for axis in chart(rows, columns))
+    numbers = identity[:, : -len(AXES) - 1].unflatten(1, (len(BUMPS), 3))
+    radius = _ellipsoid(identity[:, -len(AXES) - 1 :], azimuth, elevation)
+    return (radius + _bumps(numbers, azimuth, elevation))[:, None]
+
+
+def surface(radius: Float[Tensor, "batch 1 rows columns"]) -> Surface:
+    """A radius over the chart with its unit normals."""
+    azimuth, elevation = (axis.to(radius) for axis in chart(*radius.shape[-2:]))
+    point = radius * _direction(azimuth, elevation)
+    down, right = torch.gradient(point, dim=(2, 3))
+    return Surface(radius, unit(torch.linalg.cross(down, right, dim=1)))
+
+
+def unit(vectors: Float[Tensor, "batch 3 *shape"]) -> Float[Tensor, "batch 3 *shape"]:
+    """Vectors along axis 1 divided by their length; many times faster on a CPU than F.normalize."""
+    return vectors * (vectors**2).sum(1, keepdim=True).rsqrt()
+
+
+def sample(
+    texture: Float[Tensor, "batch channels rows columns"], direction: Float[Tensor, "batch 3 h w"]
+) -> Float[Tensor, "batch channels h w"]:
+    """Values of a chart in the directions given (unit vectors in the head's axes)."""
+    azimuth = torch.atan2(direction[:, 0], direction[:, 2]) / CHART[0]
+    elevation = torch.asin(direction[:, 1].clamp(-1, 1)) / CHART[1]
+    grid = torch.stack([azimuth, -elevation], -1)
+    return F.grid_sample(texture, grid, align_corners=True, padding_mode="border")
+
+
+def _ellipsoid(
+    numbers: Float[Tensor, "batch 4"], azimuth: Tensor, elevation: Tensor
+) -> Float[Tensor, "batch rows columns"]:
+    a, b, c = (numbers.new_tensor(AXES) * (1 + 0.05 * numbers[:, :3])).unbind(1)
+    taper = (0.16 + 0.04 * numbers[:, 3, None, None]) * (-elevation).clamp_min(0)
+    x, y, z = _direction(azimuth, elevation).abs() ** ROUNDNESS
+    widths = (a[:, None, None] * (1 - taper), b[:, None, None], c[:, None, None])
+    radius = torch.zeros_like(x)
+    for axis, width in zip((x, y, z), widths, strict=True):
+        radius = radius + axis * width.pow(-ROUNDNESS)
+    return radius.pow(-1 / ROUNDNESS)
+
+
+def _bumps(
+    numbers: Float[Tensor, "batch bumps 3"], azimuth: Tensor, elevation: Tensor
+) -> Float[Tensor, "batch rows columns"]:
+    at, level, width, tall, height = numbers.new_tensor(list(BUMPS.values())).T[..., None]
+    scale, up, wide = numbers[..., None].unbind(2)
+    # A bump on the middle line has one side, the others two: the nearer one counts.
+    across = torch.where(at > 0, azimuth.abs() - at, azimuth) / (width * (1 + 0.12 * wide))
+    along = (elevation.T - level - 0.025 * up) / tall
+    profile = height * (1 + 0.3 * scale) * torch.exp(-(along**2) / 2)
+    return torch.matmul(profile.mT, torch.exp(-(across**2) / 2))
+
+
+def _direction(azimuth: Tensor, elevation: Tensor) -> Float[Tensor, "3 rows columns"]:
+    x, y = elevation.cos() * azimuth.sin(), elevation.sin().expand(-1, azimuth.shape[1])
+    return torch.stack([x, y, elevation.cos() * azimuth.cos()])

@@ -1,0 +1,54 @@
+"""Shapes are checked, hypothesis repeats itself, and shared data are found or said to be absent."""
+
+import os
+from collections.abc import Callable
+from pathlib import Path
+
+import pytest
+from hypothesis import settings
+from jaxtyping import install_import_hook
+
+# Small tensors: a second thread waits more than it works, above all on a busy machine.
+os.environ.setdefault("OMP_NUM_THREADS", "1")
+# Before anything of the package is imported: the hook rewrites modules as they are loaded.
+install_import_hook("skinnet", "beartype.beartype")
+
+import torch  # noqa: E402
+
+from skinnet.camera import COMPONENTS, LIGHTS  # noqa: E402
+from skinnet.capture import Capture  # noqa: E402
+
+settings.register_profile(
+    "skinnet", deadline=None, max_examples=25, derandomize=True, database=None
+)
+settings.load_profile("skinnet")
+
+SHARED = Path(__file__).parents[2] / "shared" / "data"
+
+
+@pytest.fixture(scope="session")
+def shared_data() -> Path:
+    """The folder of data that the project does not carry."""
+    if not SHARED.is_dir():
+        pytest.skip("There is no folder ../shared/data beside the repository.")
+    return SHARED
+
+
+@pytest.fixture(scope="session")
+def random_capture() -> Callable[..., Capture]:
+    """Makes captures of a given shape: mixed lights, odd cameras, an imperfect white balance."""
+    return _random_capture
+
+
+def _random_capture(
+    *shape: int, seed: int = 0, dtype: torch.dtype = torch.float64, components: int = COMPONENTS
+) -> Capture:
+    generator = torch.Generator().manual_seed(seed)
+    drawn = [torch.rand(*shape, n, generator=generator, dtype=dtype) for n in (len(LIGHTS), 1)]
+    light = -torch.log(drawn[0])
+    return Capture(
+        light / light.sum(-1, keepdim=True),
+        4000 + 21000 * drawn[1][..., 0],
+        torch.randn(*shape, components, generator=generator, dtype=dtype),
+        0.1 * torch.randn(*shape, 2, generator=generator, dtype=dtype),
+    )

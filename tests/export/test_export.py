@@ -1,0 +1,128 @@
+"""Exported files give torch's numbers, say what they are, and refuse what they are not."""
+
+import json
+import os
+import subprocess
+import sys
+from pathlib import Path
+
+import onnx
+import onnxruntime
+import pytest
+import torch
+
+from export.__main__ import main
+from skinnet.autoencoder import AutoencoderConfig, SkinAutoencoder
+from skinnet.weights import load_weights, read_weights, save_weights
+
+
+@pytest.fixture(scope="module")
+def exported(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    folder = tmp_path_factory.mktemp("export")
+    torch.manual_seed(0)
+    model = SkinAutoencoder(AutoencoderConfig(widths=(8, 12, 16), working_size=48))
+    save_weights(model, folder / "start.safetensors", "nothing at all")
+    # A process of its own: the checks of shapes under pytest would fix the batch in the graph.
+    command = [sys.executable, "-m", "export", "start.safetensors", "-o", "skin.onnx"]
+    environment = {**os.environ, "PYTHONPATH": str(Path.cwd())}
+    subprocess.run(command, cwd=folder, env=environment, check=True)
+    return folder / "skin.onnx"
+
+
+def test_three_files_are_written_and_nothing_else(exported: Path) -> None:
+    names = {path.name for path in exported.parent.iterdir()}
+    assert names == {"start.safetensors", "skin.onnx", "skin.decoder.onnx", "skin.safetensors"}
+
+
+@pytest.mark.parametrize("name", ["skin.onnx", "skin.decoder.onnx"])
+def test_a_file_is_whole_and_says_what_it_is(exported: Path, name: str) -> None:
+    file = onnx.load(exported.with_name(name), load_external_data=False)
+    assert file.opset_import[0].version >= 18
+    assert all(not tensor.external_data for tensor in file.graph.initializer)
+    said = {entry.key: entry.value for entry in file.metadata_props}
+    outputs = json.loads(said["skinnet.outputs"])
+    assert [output.name for output in file.graph.output] == list(outputs)
+    assert all({"unit", "range", "description"} <= set(output) for output in outputs.values())
+    assert said["skinnet.working_size"] == "48" and said["skinnet.license"] == "MIT"
+    assert said["skinnet.trained_on"] == "nothing at all"
+
+
+def test_encoder_and_decoder_make_the_reconstruction_of_torch(exported: Path) -> None:
+    from skinnet.decoder import srgb
+
+    model = load_weights(exported.with_suffix(".safetensors"))
+    photograph = torch.randint(0, 256, (2, 37, 53, 3), dtype=torch.uint8)
+    encoder = onnxruntime.InferenceSession(exported)
+    decoder = onnxruntime.InferenceSession(exported.with_suffix(".decoder.onnx"))
+    names = [output.name for output in encoder.get_outputs()]
+    maps = dict(zip(names, encoder.run(None, {"image": photograph.numpy()}), strict=True))
+    del maps["mask"]
+    (image,) = decoder.run(None, maps)
+    with torch.no_grad():
+        expected = srgb(model(photograph.movedim(-1, 1) / 255).reconstruction).movedim(1, -1)
+    assert abs(image - expected.numpy()).max() < 1e-3
+
+
+def test_outputs_lie_in_their_stated_ranges(exported: Path) -> None:
+    session = onnxruntime.InferenceSession(exported)
+    said = json.loads(session.get_modelmeta().custom_metadata_map["skinnet.outputs"])
+    noise = torch.randint(0, 256, (1, 64, 64, 3), dtype=torch.uint8).numpy()
+    for (name, output), value in zip(
+        said.items(), session.run(None, {"image": noise}), strict=True
+    ):
+        low, high = output["range"]
+        assert low <= value.min() and value.max() <= high, name
+
+
+@pytest.mark.parametrize("suffix", [".ckpt", ".safetensors"])
+@pytest.mark.parametrize("content", [None, b"", b"not a model", "foreign"])
+def test_what_is_no_model_is_refused(
+    suffix: str, content: bytes | str | None, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    from safetensors.torch import save_file
+
+    path = tmp_path / f"model{suffix}"
+    if content == "foreign" and suffix == ".ckpt":
+        torch.save({"state_dict": {}}, path)
+    elif content == "foreign":
+        save_file({"a": torch.zeros(1)}, path)
+    elif isinstance(content, bytes):
+        path.write_bytes(content)
+    assert main([str(path), "-o", str(tmp_path / "out.onnx")]) == 2
+    assert str(path) in capsys.readouterr().err
+    assert not (tmp_path / "out.onnx").exists()
+
+
+def test_another_format_is_refused(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    path = tmp_path / "model.ckpt"
+    torch.save({"skinnet": {"format": 99, "version": "9.0"}, "state_dict": {}}, path)
+    assert main([str(path)]) == 2
+    assert "format 99" in capsys.readouterr().err
+
+
+def test_a_truncated_weights_file_is_refused(
+    exported: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    path = tmp_path / "cut.safetensors"
+    path.write_bytes(exported.with_suffix(".safetensors").read_bytes()[:-100])
+    assert main([str(path)]) == 2
+    assert "complete" in capsys.readouterr().err
+
+
+@pytest.mark.parametrize(("output", "said"), [("skin.txt", ".onnx"), ("no/skin.onnx", "folder")])
+def test_an_output_that_cannot_be_written_is_refused_first(
+    output: str, said: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    assert main(["absent.ckpt", "-o", str(tmp_path / output)]) == 2
+    assert said in capsys.readouterr().err
+
+
+def test_weights_survive_a_round_trip(tmp_path: Path) -> None:
+    model = SkinAutoencoder(AutoencoderConfig(widths=(4, 8), working_size=32))
+    path = tmp_path / "weights.safetensors"
+    save_weights(model, path, "a test")
+    again = load_weights(path)
+    assert again.config == model.config
+    assert read_weights(path)[0]["skinnet.trained_on"] == "a test"
+    state = again.state_dict()
+    assert all(torch.equal(value, state[name]) for name, value in model.state_dict().items())

@@ -1,0 +1,158 @@
+"""Photographs, and tiny ONNX files that keep the contract without any training."""
+
+import json
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import onnx
+import pytest
+from onnx import TensorProto, helper, numpy_helper
+from skimage import data
+
+LIGHTS = ("D", "A")
+MAPS = ("melanin", "hemoglobin", "shading", "specular", "mask")
+OUTPUTS = {
+    "melanin": ("melanosome volume fraction", 0.0, 0.6),
+    "hemoglobin": ("blood volume fraction", 0.0, 0.3),
+    "shading": ("relative to the light", 0.0, 4.0),
+    "specular": ("relative to the light", 0.0, 1.0),
+    "mask": ("probability", 0.0, 1.0),
+    "offset": ("linear sRGB", -1.0, 1.0),
+}
+NOTES = {
+    "format": "1",
+    "version": "0.1.0",
+    "trained_on": "nothing",
+    "license": "MIT",
+    "working_size": "64",
+    "lights": json.dumps(LIGHTS),
+    "outputs": json.dumps(
+        {
+            name: {"unit": unit, "range": [low, high], "description": name}
+            for name, (unit, low, high) in OUTPUTS.items()
+        }
+    ),
+}
+
+SaveModel = Callable[..., Path]
+
+
+@pytest.fixture(scope="session")
+def astronaut() -> np.ndarray:
+    return np.array(data.astronaut())
+
+
+@pytest.fixture(scope="session")
+def model_file(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """An encoder that calls bright red pixels skin, with its decoder beside it."""
+    return save_models(tmp_path_factory.mktemp("models") / "tiny.onnx")
+
+
+@pytest.fixture(scope="session")
+def skinless_file(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """An encoder that finds no skin anywhere."""
+    return save_models(tmp_path_factory.mktemp("models") / "blind.onnx", skin_from=2.0)
+
+
+@pytest.fixture
+def save_model(tmp_path: Path) -> SaveModel:
+    """Writes the two files under a name, with metadata changed (None: left out)."""
+
+    def save(name: str = "changed.onnx", **notes: str | None) -> Path:
+        return save_models(tmp_path / name, **notes)
+
+    return save
+
+
+def save_models(path: Path, skin_from: float = 0.5, **notes: str | None) -> Path:
+    for kind, graph, target in (
+        ("encoder", encoder_graph(skin_from), path),
+        ("decoder", decoder_graph(), path.with_name(f"{path.stem}.decoder.onnx")),
+    ):
+        opset = helper.make_opsetid("", 20)
+        model = helper.make_model(graph, opset_imports=[opset], ir_version=10)
+        merged: dict[str, str | None] = {"kind": kind} | NOTES | notes
+        kept = {f"skinnet.{key}": value for key, value in merged.items() if value is not None}
+        helper.set_model_props(model, kept)
+        onnx.checker.check_model(model)
+        onnx.save(model, target)
+    return path
+
+
+def encoder_graph(skin_from: float) -> onnx.GraphProto:
+    """Maps that are simple functions of a pixel, and constant globals."""
+    nodes = [
+        helper.make_node("Cast", ["image"], ["float"], to=TensorProto.FLOAT),
+        helper.make_node("Div", ["float", "white"], ["unit"]),
+        helper.make_node("ReduceMean", ["unit", "last"], ["grey"], keepdims=0),
+        helper.make_node("Gather", ["unit", "first"], ["red"], axis=3),
+        helper.make_node("Greater", ["red", "skin_from"], ["skin"]),
+        helper.make_node("Cast", ["skin"], ["mask"], to=TensorProto.FLOAT),
+        helper.make_node("Mul", ["grey", "fifth"], ["hemoglobin"]),
+        helper.make_node("Sub", ["fifth", "hemoglobin"], ["melanin"]),
+        helper.make_node("Add", ["grey", "fifth"], ["shading"]),
+        helper.make_node("Mul", ["hemoglobin", "fifth"], ["specular"]),
+        helper.make_node("Mul", ["unit", "fifth"], ["offset"]),
+        *(helper.make_node("Identity", [f"the_{name}"], [name]) for name in GLOBALS),
+    ]
+    constants = {
+        "white": np.float32(255),
+        "last": np.array([3]),
+        "first": np.array(0),
+        "skin_from": np.float32(skin_from),
+        "fifth": np.float32(0.2),
+    } | {f"the_{name}": value for name, value in GLOBALS.items()}
+    outputs = [value_info(name) for name in (*OUTPUTS, *GLOBALS)]
+    image = helper.make_tensor_value_info("image", TensorProto.UINT8, ["batch", "h", "w", 3])
+    return helper.make_graph(nodes, "encoder", [image], outputs, initializers(constants))
+
+
+GLOBALS = {
+    "light": np.array([[0.75, 0.25]], np.float32),
+    "temperature": np.array([6504], np.float32),
+    "camera": np.array([[0.5, -0.5, 0.0]], np.float32),
+    "white_balance": np.log(np.array([[1.02, 0.97]], np.float32)),
+}
+
+
+def decoder_graph() -> onnx.GraphProto:
+    """A grey absorbed by melanin, and more in green by blood: no physics, but the right signs."""
+    nodes = [
+        helper.make_node("Unsqueeze", [name, "last"], [f"{name}3"])
+        for name in MAPS
+        if name != "mask"
+    ] + [
+        helper.make_node("Mul", ["melanin3", "by_melanin"], ["dark"]),
+        helper.make_node("Mul", ["hemoglobin3", "by_blood"], ["flush"]),
+        helper.make_node("Add", ["dark", "flush"], ["density"]),
+        helper.make_node("Neg", ["density"], ["negative"]),
+        helper.make_node("Exp", ["negative"], ["skin"]),
+        helper.make_node("Mul", ["skin", "shading3"], ["shaded"]),
+        helper.make_node("Add", ["shaded", "specular3"], ["glossy"]),
+        helper.make_node("Add", ["glossy", "offset"], ["whole"]),
+        helper.make_node("Clip", ["whole", "zero", "one"], ["image"]),
+    ]
+    constants = {
+        "last": np.array([3]),
+        "by_melanin": np.array([2, 3, 5], np.float32),
+        "by_blood": np.array([1, 6, 4], np.float32),
+        "zero": np.float32(0),
+        "one": np.float32(1),
+    }
+    names = [name for name in (*OUTPUTS, *GLOBALS) if name != "mask"]
+    image = helper.make_tensor_value_info("image", TensorProto.FLOAT, ["batch", "h", "w", 3])
+    return helper.make_graph(
+        nodes, "decoder", [value_info(n) for n in names], [image], initializers(constants)
+    )
+
+
+def value_info(name: str) -> onnx.ValueInfoProto:
+    axes: dict[str, list[Any]] = {"offset": ["batch", "h", "w", 3], "temperature": ["batch"]}
+    shape = ["batch", f"{name}s"] if name in GLOBALS else ["batch", "h", "w"]
+    return helper.make_tensor_value_info(name, TensorProto.FLOAT, axes.get(name, shape))
+
+
+def initializers(constants: dict[str, Any]) -> list[onnx.TensorProto]:
+    return [numpy_helper.from_array(np.asarray(v), name) for name, v in constants.items()]

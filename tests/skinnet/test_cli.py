@@ -1,0 +1,322 @@
+import io
+import json
+import os
+import subprocess
+import sys
+from collections.abc import Callable
+from pathlib import Path
+
+import numpy as np
+import pytest
+from PIL import Image
+
+from skinnet import __version__, cli
+from skinnet.cli import main
+
+MAPS = [
+    *("hemoglobin", "mask", "melanin", "offset_b", "offset_g", "offset_r", "shading", "specular")
+]
+FILES = sorted([*(f"a_{name}.png" for name in (*MAPS, "panel", "reconstruction")), "a.json"])
+
+Predict = Callable[..., int]
+
+
+@pytest.fixture
+def photo(tmp_path: Path, astronaut: np.ndarray) -> Path:
+    path = tmp_path / "a.png"
+    Image.fromarray(astronaut[:256, 96:352]).save(path)
+    return path
+
+
+@pytest.fixture
+def predict(model_file: Path) -> Predict:
+    return lambda *arguments: main(["predict", *map(str, arguments), "--model", str(model_file)])
+
+
+@pytest.fixture
+def edit(model_file: Path) -> Predict:
+    return lambda *arguments: main(["edit", *map(str, arguments), "--model", str(model_file)])
+
+
+def names(folder: Path) -> list[str]:
+    return sorted(path.name for path in folder.iterdir())
+
+
+def pixels(path: Path) -> np.ndarray:
+    with Image.open(path) as image:
+        return np.array(image)
+
+
+def test_predict_writes_beside_the_photograph(
+    predict: Predict, photo: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    assert predict(photo) == 0
+    assert names(photo.parent / "skinnet") == FILES
+    out, err = capsys.readouterr()
+    assert (
+        out.startswith(f"{photo}: melanin 0.0") and "11 files" in out and len(out.split("\n")) == 2
+    )
+    assert err == ""
+
+
+def test_maps_say_what_their_pixels_mean(predict: Predict, photo: Path, tmp_path: Path) -> None:
+    assert predict(photo, "-o", tmp_path / "out") == 0
+    summary = json.loads((tmp_path / "out" / "a.json").read_text())
+    with Image.open(tmp_path / "out" / "a_melanin.png") as image:
+        note = image.text
+        values = float(note["scale"]) * np.array(image) + float(note["offset"])
+    skin = pixels(tmp_path / "out" / "a_mask.png") > 0.501 * 65535
+    assert note["unit"] == "melanosome volume fraction"
+    assert values[skin].mean() == pytest.approx(summary["maps"]["melanin"]["mean"], rel=1e-3)
+
+
+def test_json_alone_goes_to_standard_output(
+    predict: Predict, photo: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    assert predict(photo, photo, "--json", "-o", tmp_path / "out") == 0
+    lines = capsys.readouterr().out.splitlines()
+    assert len(lines) == 2
+    first = json.loads(lines[0])
+    assert first["file"] == str(photo)
+    assert first == json.loads((tmp_path / "out" / "a.json").read_text())
+
+
+def test_no_skin_is_null_and_said(
+    skinless_file: Path, photo: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    assert main(["predict", str(photo), "--model", str(skinless_file)]) == 0
+    assert "no skin was found" in capsys.readouterr().out
+    summary = json.loads((photo.parent / "skinnet" / "a.json").read_text())
+    assert summary["maps"]["melanin"]["mean"] is None
+
+
+def test_equal_stems_do_not_overwrite_each_other(
+    predict: Predict, photo: Path, tmp_path: Path
+) -> None:
+    Image.open(photo).convert("RGB").save(tmp_path / "A.jpg")
+    out = tmp_path / "out"
+    assert predict(photo, tmp_path / "A.jpg", photo, "-o", out) == 0
+    summaries = {
+        name: json.loads((out / name).read_text()) for name in names(out) if "json" in name
+    }
+    assert {name: summary["file"] for name, summary in summaries.items()} == {
+        "a.json": str(photo),
+        "A-2.json": str(tmp_path / "A.jpg"),
+        "a-3.json": str(photo),
+    }
+
+
+def test_a_folder_goes_on_after_a_bad_file(
+    predict: Predict, photo: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    folder = photo.parent
+    (folder / "0.jpg").write_bytes(b"")
+    (folder / "b.png").write_bytes(photo.read_bytes()[:5000])
+    (folder / "notes.txt").write_text("not looked at")
+    (folder / "z.jpg").mkdir()
+    assert predict(folder) == 2
+    assert names(folder / "skinnet") == FILES
+    out, err = capsys.readouterr()
+    assert len(out.splitlines()) == 1
+    empty, truncated = err.splitlines()
+    assert empty.startswith(f"skinnet: {folder / '0.jpg'} is empty")
+    assert truncated.startswith(f"skinnet: {folder / 'b.png'} is damaged or cut short")
+
+
+def test_a_list_goes_on_after_a_bad_file(
+    predict: Predict, photo: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    (tmp_path / "empty").mkdir()
+    assert predict(tmp_path / "no.jpg", tmp_path / "empty", photo) == 2
+    missing, empty = capsys.readouterr().err.splitlines()
+    assert missing == f"skinnet: There is no file {tmp_path / 'no.jpg'}; check the path."
+    assert empty.startswith(f"skinnet: The folder {tmp_path / 'empty'} holds no photographs; they")
+    assert names(tmp_path / "skinnet") == FILES
+
+
+def test_no_face_names_the_way_on(
+    predict: Predict, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    wall = tmp_path / "wall.png"
+    Image.new("RGB", (80, 60), "white").save(wall)
+    assert predict(wall) == 2
+    assert names(tmp_path) == ["wall.png"]
+    assert f"No face was found in {wall}" in (err := capsys.readouterr().err)
+    assert "--whole-image" in err
+    assert predict(wall, "--whole-image") == 0
+
+
+def test_standard_input_is_a_photograph(
+    predict: Predict, photo: Path, monkeypatch: pytest.MonkeyPatch, tmp_path: Path
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    monkeypatch.setattr(sys, "stdin", io.TextIOWrapper(io.BytesIO(photo.read_bytes())))
+    assert predict("-") == 0
+    assert "stdin_panel.png" in names(tmp_path / "skinnet")
+    assert json.loads((tmp_path / "skinnet" / "stdin.json").read_text())["file"] == "standard input"
+
+
+@pytest.mark.parametrize("verb", ["predict", "edit"])
+def test_empty_standard_input_is_said(
+    verb: str,
+    model_file: Path,
+    monkeypatch: pytest.MonkeyPatch,
+    capsys: pytest.CaptureFixture[str],
+) -> None:
+    monkeypatch.setattr(sys, "stdin", io.TextIOWrapper(io.BytesIO(b"")))
+    assert main([verb, "-", "--model", str(model_file)]) == 2
+    assert (
+        capsys.readouterr().err
+        == "skinnet: standard input is empty (0 bytes); was it copied whole?\n"
+    )
+
+
+def test_a_folder_that_cannot_be_written_is_said(
+    predict: Predict, photo: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    (tmp_path / "file").write_text("")
+    before = names(tmp_path)
+    assert predict(photo, "-o", tmp_path / "file" / "out") == 2
+    assert predict(photo, "-o", tmp_path / "file") == 2
+    lines = capsys.readouterr().err.splitlines()
+    assert len(lines) == 2
+    assert all("cannot be written" in line and "with -o" in line for line in lines)
+    assert names(tmp_path) == before
+
+
+def test_a_file_that_cannot_be_written_takes_the_others_with_it(
+    predict: Predict, photo: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    (tmp_path / "out" / "a.json").mkdir(parents=True)
+    assert predict(photo, "-o", tmp_path / "out") == 2
+    assert "a.json is a folder" in capsys.readouterr().err
+    assert names(tmp_path / "out") == ["a.json"]
+
+
+@pytest.mark.parametrize("verb", ["predict", "edit"])
+def test_a_bad_model_is_said_once(
+    verb: str, photo: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    (tmp_path / "bad.onnx").write_bytes(b"bad")
+    assert main([verb, str(photo), "--model", str(tmp_path / "bad.onnx")]) == 2
+    (line,) = capsys.readouterr().err.splitlines()
+    assert line.startswith(f"skinnet: {tmp_path / 'bad.onnx'} is not a whole ONNX file")
+    assert names(tmp_path) == ["a.png", "bad.onnx"]
+
+
+def test_edit_keeps_what_is_not_skin(edit: Predict, photo: Path, tmp_path: Path) -> None:
+    assert edit(photo, "--melanin", "2") == 0
+    before, after = pixels(photo), pixels(tmp_path / "a_edited.png")
+    same = (before == after).all(-1)
+    assert 0.2 < same.mean() < 0.9
+    assert (after[~same].astype(int) <= before[~same]).all()
+
+
+@pytest.mark.parametrize("suffix", [".jpg", ".JPEG", ".png"])
+def test_edit_writes_the_format_that_is_asked_for(
+    edit: Predict, photo: Path, tmp_path: Path, suffix: str
+) -> None:
+    target = tmp_path / f"b{suffix}"
+    assert edit(photo, "--hemoglobin", "2", "-o", target) == 0
+    with Image.open(target) as image:
+        assert image.format == ("PNG" if suffix == ".png" else "JPEG")
+        assert image.size == (256, 256)
+
+
+@pytest.mark.parametrize(
+    ("options", "words"),
+    [
+        (["-o", "b.gif"], "b.gif has to end in .png, .jpg, .jpeg; got '.gif'"),
+        (["-o", "b"], "got ''"),
+        (["-o", "a.png"], "a.png is the photograph itself; choose another file with -o"),
+        (["-o", "./a.png"], "is the photograph itself"),
+        (["-o", "none/b.png"], "b.png cannot be written"),
+        (["--melanin", "nan"], "melanin is multiplied by a number in [0, 10]; got nan"),
+        (["--hemoglobin", "-1"], "hemoglobin is multiplied by a number in [0, 10]; got -1"),
+        (["--melanin", "11"], "got 11"),
+    ],
+)
+def test_edit_refuses_in_a_sentence(
+    edit: Predict,
+    photo: Path,
+    monkeypatch: pytest.MonkeyPatch,
+    capsys: pytest.CaptureFixture[str],
+    options: list[str],
+    words: str,
+) -> None:
+    monkeypatch.chdir(photo.parent)
+    before = photo.read_bytes()
+    assert edit("a.png", *options) == 2
+    assert words in capsys.readouterr().err
+    assert names(photo.parent) == ["a.png"] and photo.read_bytes() == before
+
+
+@pytest.mark.parametrize("source", ["", ".", "none.jpg", "a\0b.jpg", "x" * 300 + ".jpg"])
+@pytest.mark.parametrize("verb", ["predict", "edit"])
+def test_odd_paths_are_sentences(
+    verb: str,
+    source: str,
+    model_file: Path,
+    tmp_path: Path,
+    monkeypatch: pytest.MonkeyPatch,
+    capsys: pytest.CaptureFixture[str],
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    assert main([verb, source, "--model", str(model_file)]) == 2
+    (line,) = capsys.readouterr().err.splitlines()
+    assert line.startswith("skinnet: ") and line.endswith(".")
+    assert names(tmp_path) == []
+
+
+@pytest.mark.parametrize(
+    "arguments", [[], ["predict"], ["paint", "a.jpg"], ["edit", "a.jpg", "--melanin", "dark"]]
+)
+def test_usage_errors_exit_with_2(arguments: list[str]) -> None:
+    with pytest.raises(SystemExit) as stop:
+        main(arguments)
+    assert stop.value.code == 2
+
+
+def test_an_interrupt_is_quiet(
+    monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    def interrupt(options: object) -> int:
+        raise KeyboardInterrupt
+
+    monkeypatch.setattr(cli, "predict", interrupt)
+    assert main(["predict", "a.jpg"]) == 130
+    assert capsys.readouterr() == ("", "")
+
+
+def test_the_command_runs_as_a_module() -> None:
+    command = [sys.executable, "-W", "error", "-m", "skinnet"]
+    shown = subprocess.run([*command, "--version"], check=True, capture_output=True, text=True)
+    assert shown.stdout == f"skinnet {__version__}\n"
+    failed = subprocess.run(
+        [*command, "edit", "none.jpg", "--melanin", "99"], capture_output=True, text=True
+    )
+    assert failed.returncode == 2 and failed.stdout == ""
+    assert failed.stderr.startswith("skinnet: ") and len(failed.stderr.splitlines()) == 1
+
+
+def test_a_name_that_the_pipe_cannot_take_is_escaped(photo: Path, model_file: Path) -> None:
+    odd = photo.rename(photo.with_name("\u00e9\udcff.png"))
+    command = [sys.executable, "-m", "skinnet", "predict", odd, "--model", model_file]
+    for option in ([], ["--json"]):
+        done = subprocess.run(
+            [*command, *option],
+            env={**os.environ, "PYTHONIOENCODING": "ascii"},
+            capture_output=True,
+            text=True,
+        )
+        assert done.returncode == 0, done.stderr
+        assert "\\udcff.png" in done.stdout
+
+
+def test_a_closed_pipe_is_no_traceback(photo: Path, model_file: Path) -> None:
+    command = [sys.executable, "-m", "skinnet", "predict", photo, "--model", model_file]
+    with subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.PIPE) as process:
+        assert process.stdout is not None and process.stderr is not None
+        process.stdout.close()
+        assert process.stderr.read() == b""
+    assert process.returncode == 1

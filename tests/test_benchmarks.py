@@ -1,0 +1,100 @@
+"""The benchmarks' figures: those that are accuracies reach their targets; no time is asserted."""
+
+import json
+import sys
+from pathlib import Path
+
+import pytest
+import torch
+
+from benchmarks import decoder, report, spectra
+from skinnet.optics import PRESETS
+from skinnet.reflectance import SkinReflectance
+
+
+@pytest.fixture(scope="module")
+def found() -> report.Results:
+    return spectra.measure(radii=(0.0, 10e-4, 20e-4, 30e-4, 40e-4))
+
+
+def test_spectra_report_every_preset_and_what_stands_beside_them(found: report.Results) -> None:
+    assert set(found) == {
+        *PRESETS,
+        "split_half",
+        "rgb",
+        "rgb_up_to_scale",
+        "rgb_scale_near_one",
+        "pca",
+    }
+    for preset in PRESETS:
+        assert set(found[preset]) == {"median", "p95", "paper_range_median"}
+        assert 0 < found[preset]["median"] < found[preset]["p95"] < 1
+        assert found[preset]["median"] <= found[preset]["paper_range_median"]
+    assert set(found["pca"]) == {"1", "2", "3"}
+
+
+def test_spectra_reach_their_targets(found: report.Results) -> None:
+    assert found["calibrated"]["median"] <= 0.0170
+    assert found["paper"]["median"] <= 0.036
+    assert found["authors"]["median"] > 0.05 and found["printed"]["median"] > 0.1
+    assert found["rgb"]["median"] <= 0.021 and found["rgb"]["p95"] <= 0.030
+    for name in ("rgb_up_to_scale", "rgb_scale_near_one"):
+        assert found[name]["median"] <= 0.019 and found[name]["p95"] <= 0.028
+
+
+def test_a_radius_chosen_on_others_is_as_good(found: report.Results) -> None:
+    half = found["split_half"]
+    assert half["median"] <= 0.0170 and half["worst_median"] <= 0.019
+    assert sum(half["r_um"].values()) == half["splits"]
+    assert all(15 <= float(radius) <= 40 for radius in half["r_um"])
+
+
+def test_principal_components_are_the_known_yardstick(found: report.Results) -> None:
+    expected = {"1": 0.0116, "2": 0.0074, "3": 0.0032}
+    assert found["pca"] == pytest.approx(expected, abs=1e-4)
+
+
+def test_fit_finds_what_was_rendered() -> None:
+    model = SkinReflectance(dtype=torch.float64).bands
+    generator = torch.Generator().manual_seed(0)
+    truth = torch.rand(20, 2, generator=generator, dtype=torch.float64) * torch.tensor([0.6, 0.3])
+    truth[0], truth[1] = torch.tensor([0.0, 0.3]), torch.tensor([0.01, 0.0])
+    assert torch.allclose(spectra.fit(model, model(*truth.T)), truth, atol=1e-6)
+
+
+def test_spectra_are_those_shared(shared_data: Path) -> None:
+    shared = (shared_data / "spectra" / "nist_forearm_100.csv").read_text()
+    ours = (Path(spectra.__file__).parent / "data" / "nist_forearm_100.csv").read_text()
+    assert ours.startswith("# ") and "10.18434/M38597" in ours.splitlines()[0]
+    assert ours.split("\n", 1)[1] == shared
+    assert spectra.measured().shape == (100, 33)
+
+
+@pytest.mark.skipif(sys.platform != "linux", reason="Resident peaks are read from /proc.")
+def test_decoder_reports_its_figures() -> None:
+    found = decoder.measure(images=2, size=64, rounds=1)
+    ways = {"fast", "bands", "grid", "grid_matmul"}
+    figures = {f"speedup_vs_{way}" for way in ways - {"fast"}} | {"memory_ratio"}
+    assert set(found) == figures | {"max_error", "gradient_error", "seconds", "memory_mb"}
+    assert set(found["seconds"]) == ways and set(found["memory_mb"]) == {"fast", "bands"}
+    assert found["max_error"] <= 5e-4 and found["gradient_error"] <= 0.01
+
+
+@pytest.mark.parametrize("at_once", [True, False])
+def test_the_usual_way_is_the_same_function(at_once: bool) -> None:
+    bands = decoder.SkinDecoder(fast=False)
+    view = decoder.scene(2, 32)
+    expected = decoder.decoded(bands, *view)
+    assert torch.allclose(decoder.SpectralGrid(bands, at_once)(*view), expected, atol=1e-3)
+
+
+def test_report_is_a_table_or_one_object(
+    capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    results: report.Results = {"a": {"median": 0.25, "n": 3}, "b": 1e-4}
+    monkeypatch.setattr(sys, "argv", ["benchmark", "--json"])
+    report.main(lambda: results, "")
+    assert json.loads(capsys.readouterr().out) == results
+    monkeypatch.setattr(sys, "argv", ["benchmark"])
+    report.main(lambda: results, "")
+    assert capsys.readouterr().out.split() == ["a.median", "0.25", "a.n", "3", "b", "0.0001"]

@@ -1,0 +1,168 @@
+"""The training command: what it leaves, how it goes on, what it refuses."""
+
+import csv
+from collections.abc import Callable
+from functools import partial
+from pathlib import Path
+
+import pytest
+import torch
+import yaml
+from lightning import Trainer
+
+from train.callbacks import LastCheckpoint, PictureGrid
+from train.cli import main
+
+Fit = Callable[..., int]
+
+
+def losses(run: Path) -> dict[int, float]:
+    with (run / "metrics.csv").open() as file:
+        rows = [row for row in csv.DictReader(file) if row["metric"] == "train/loss"]
+    return {int(row["step"]): float(row["value"]) for row in rows}
+
+
+def weights(path: Path) -> dict[str, torch.Tensor]:
+    state: dict[str, torch.Tensor] = torch.load(path, weights_only=True)["state_dict"]
+    return state
+
+
+def test_a_run_leaves_checkpoints_configuration_curves_and_pictures(
+    fit: Fit, tmp_path: Path
+) -> None:
+    run = tmp_path / "run"
+    assert fit(run, "--trainer.max_epochs=1") == 0
+    names = {path.name for path in run.iterdir()}
+    assert {"last.ckpt", "best.ckpt", "config.yaml", "metrics.csv", "pictures"} <= names
+    assert any(name.startswith("events.out.tfevents") for name in names)
+    assert list((run / "pictures").glob("step_*.png"))
+    assert yaml.safe_load((run / "config.yaml").read_text())["model"]["widths"] == [4, 8]
+
+
+class Killed(BaseException):
+    """Stands for the end of a process."""
+
+
+@pytest.mark.parametrize("stopped_after", ["--trainer.max_epochs=2", "--trainer.max_steps=6"])
+def test_a_resumed_run_has_the_losses_and_weights_of_one_that_never_stopped(
+    fit: Fit, tmp_path: Path, stopped_after: str, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    # The learning rate follows the number of steps planned, which a shorter run would change.
+    monkeypatch.setattr("train.task.one_cycle", lambda step, warmup, steps: 1.0)
+    whole, parts = tmp_path / "whole", tmp_path / "parts"
+    assert fit(whole, "--trainer.max_epochs=3") == 0
+    assert fit(parts, stopped_after) == 0
+    resumed = (f"--ckpt_path={parts / 'last.ckpt'}", "--trainer.max_epochs=3")
+    assert fit(parts, *resumed) == 0
+    assert losses(parts) == losses(whole)
+    one, other = weights(whole / "last.ckpt"), weights(parts / "last.ckpt")
+    assert all(torch.equal(one[name], other[name]) for name in one)
+
+
+def test_a_killed_run_goes_on_from_its_last_checkpoint(
+    fit: Fit, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    whole, parts = tmp_path / "whole", tmp_path / "parts"
+    assert fit(whole, "--trainer.max_epochs=2") == 0
+
+    def kill(trainer: Trainer, *_: object) -> None:
+        if trainer.global_step == 6:
+            raise Killed
+
+    monkeypatch.setattr("train.cli.LastCheckpoint", partial(LastCheckpoint, seconds=0.0))
+    with monkeypatch.context() as context, pytest.raises(Killed):
+        context.setattr(PictureGrid, "on_train_batch_end", lambda _, *hook: kill(*hook))
+        fit(parts, "--trainer.max_epochs=2")
+    assert fit(parts, f"--ckpt_path={parts / 'last.ckpt'}", "--trainer.max_epochs=2") == 0
+    one, other = weights(whole / "last.ckpt"), weights(parts / "last.ckpt")
+    assert all(torch.equal(one[name], other[name]) for name in one)
+
+
+def test_an_earlier_run_is_kept_aside(fit: Fit, tmp_path: Path) -> None:
+    run = tmp_path / "run"
+    run.mkdir()
+    (run / "last.ckpt").write_bytes(b"precious")
+    assert fit(run, "--trainer.max_steps=1") == 0
+    assert (tmp_path / "run.1" / "last.ckpt").read_bytes() == b"precious"
+
+
+def test_a_missing_checkpoint_is_an_error(
+    fit: Fit, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    for path in (str(tmp_path / "absent.ckpt"), "last"):
+        assert fit(tmp_path / "run", f"--ckpt_path={path}") == 2
+        assert f"{path} is not a checkpoint file" in capsys.readouterr().err
+    assert not (tmp_path / "run").exists()
+
+
+@pytest.mark.parametrize("command", ["validate", "test"])
+def test_evaluation_refuses_to_run_untrained(
+    command: str, capsys: pytest.CaptureFixture[str]
+) -> None:
+    assert main([command, "--config=configs/quick.yaml"]) == 2
+    assert "--ckpt_path" in capsys.readouterr().err
+
+
+def test_evaluation_runs_a_checkpoint(fit: Fit, tmp_path: Path) -> None:
+    run = tmp_path / "run"
+    assert fit(run, "--trainer.max_epochs=1") == 0
+    again = tmp_path / "again"
+    small = [f"--run={again}", "--config", str(run / "config.yaml")]
+    for command in ("validate", "test"):
+        arguments = [command, *small, f"--ckpt_path={run / 'best.ckpt'}"]
+        assert main(arguments) == 0
+
+
+@pytest.mark.parametrize("content", [b"", b"not a checkpoint", None])
+def test_a_checkpoint_that_is_none_is_refused(
+    fit: Fit, tmp_path: Path, content: bytes | None, capsys: pytest.CaptureFixture[str]
+) -> None:
+    path = tmp_path / "broken.ckpt"
+    if content is None:
+        torch.save({"somebody": "else's"}, path)
+    else:
+        path.write_bytes(content)
+    assert fit(tmp_path / "run", f"--ckpt_path={path}") == 2
+    assert str(path) in capsys.readouterr().err
+
+
+@pytest.mark.parametrize(
+    ("argument", "said"),
+    [
+        ("--model.nonsense=1", "nonsense"),
+        ("--model.learning_rate=-1", "learning_rate"),
+        ("--data.init_args.batch_size=0", "batch_size"),
+        ("--model.losses.pigments=-3", "pigments"),
+        ("--data.class_path=Nothing", "class_path"),
+    ],
+)
+def test_an_unknown_key_or_a_value_out_of_range_is_named(
+    fit: Fit, tmp_path: Path, argument: str, said: str, capsys: pytest.CaptureFixture[str]
+) -> None:
+    with pytest.raises(SystemExit) as stop:
+        fit(tmp_path / "run", argument)
+    assert stop.value.code == 2
+    assert said in capsys.readouterr().err
+    assert not (tmp_path / "run").exists()
+
+
+def test_an_unknown_preset_is_named(
+    fit: Fit, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    assert fit(tmp_path / "run", "--model.optics=sunny") == 2
+    assert "calibrated" in capsys.readouterr().err
+
+
+def test_weights_to_start_from_are_their_own_argument(
+    fit: Fit, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    from skinnet.autoencoder import AutoencoderConfig, SkinAutoencoder
+    from skinnet.weights import save_weights
+
+    start = tmp_path / "start.safetensors"
+    save_weights(SkinAutoencoder(AutoencoderConfig(widths=(4, 8))), start, "nothing")
+    assert fit(tmp_path / "run", f"--model.weights={start}", "--trainer.max_steps=1") == 0
+    other = tmp_path / "other.safetensors"
+    save_weights(SkinAutoencoder(AutoencoderConfig(widths=(4, 6))), other, "nothing")
+    assert fit(tmp_path / "run2", f"--model.weights={other}") == 2
+    assert "another shape" in capsys.readouterr().err

@@ -1,0 +1,17 @@
+"""Data go on from where training stopped."""
+
+from itertools import islice
+
+from train.stream import StreamLoader, StreamSampler
+
+
+def test_an_epoch_starts_at_what_was_seen_and_ends_where_it_would_have_ended() -> None:
+    assert list(StreamSampler(10, lambda: 0)) == list(range(10))
+    assert list(StreamSampler(10, lambda: 14)) == list(range(14, 20))
+    assert list(StreamSampler(10, lambda: 20)) == list(range(20, 30))
+
+
+def test_a_loader_has_whole_batches_only() -> None:
+    loader = StreamLoader(list(range(100)), 4, 10, lambda: 0)  # type: ignore[arg-type]
+    assert [batch.tolist() for batch in islice(loader, 5)] == [[0, 1, 2, 3], [4, 5, 6, 7]]
+    assert len(loader) == 2

@@ -1,0 +1,99 @@
+"""Write skinnet/tables from colour-science and the measured tables.
+
+    python tools/bake_tables.py ../shared/data/tables
+
+The wheel carries plain CSV files on the 33 bands, 400 to 720 nm, each with its source in its first
+lines, so that neither colour-science nor the raw tables are needed at run time.
+"""
+
+import csv
+import sys
+from collections.abc import Iterable, Sequence
+from pathlib import Path
+
+import colour
+import numpy as np
+
+BANDS = np.arange(400, 721, 10)
+TARGET = Path(__file__).parents[1] / "skinnet" / "tables"
+ILLUMINANTS = ("A", "FL2", "FL7", "FL11", "LED-B1", "LED-B3", "LED-B5", "LED-V1")
+
+
+def main(raw: Path) -> None:
+    write_light_tables()
+    write_pigments(raw)
+    write_cameras(raw)
+
+
+def write_light_tables() -> None:
+    shape = colour.SpectralShape(400, 720, 10)
+    observer = colour.MSDS_CMFS["CIE 1931 2 Degree Standard Observer"].copy().align(shape)
+    components = colour.colorimetry.SDS_BASIS_FUNCTIONS_CIE_ILLUMINANT_D_SERIES
+    daylight = [components[name].copy().align(shape).values for name in ("S0", "S1", "S2")]
+    lights = [band_power(name) for name in ILLUMINANTS]
+    write(
+        "observer.csv",
+        "CIE 1931 2 degree standard observer (CIE 015:2018), through colour-science",
+        ("wavelength_nm", "x_bar", "y_bar", "z_bar"),
+        np.column_stack([BANDS, observer.values]),
+    )
+    write(
+        "daylight.csv",
+        "components of the CIE D series (CIE 015:2018), through colour-science",
+        ("wavelength_nm", "s0", "s1", "s2"),
+        np.column_stack([BANDS, *daylight]),
+    )
+    write(
+        "illuminants.csv",
+        "relative power of CIE illuminants (CIE 015:2018), through colour-science, 10 nm bands",
+        ("wavelength_nm", *ILLUMINANTS),
+        np.column_stack([BANDS, *lights]),
+    )
+
+
+def band_power(name: str) -> np.ndarray:
+    # A lamp's narrow lines fall between samples 10 nm apart: average the 5 nm table over each band.
+    fine = colour.SDS_ILLUMINANTS[name].copy().align(colour.SpectralShape(395, 725, 5)).values
+    return (fine[:-2:2] + 2 * fine[1:-1:2] + fine[2::2]) / 4
+
+
+def write_pigments(raw: Path) -> None:
+    hemoglobin = np.loadtxt(raw / "hemoglobin_250_1000_2nm.csv", delimiter=",", skiprows=2)
+    melanin = np.loadtxt(raw / "melanin_400_720.csv", delimiter=",", skiprows=1)
+    write(
+        "hemoglobin.csv",
+        "molar extinction, cm^-1/(mol/L), compiled by S. Prahl (OMLC) from Gratzer and Kollias",
+        ("wavelength_nm", "oxy", "deoxy"),
+        hemoglobin[np.isin(hemoglobin[:, 0], BANDS)],
+    )
+    write(
+        "melanin.csv",
+        "extinction, L g^-1 cm^-1, OMLC after Sarna and Swartz",
+        ("wavelength_nm", "eumelanin", "pheomelanin"),
+        melanin[np.isin(melanin[:, 0], BANDS)],
+    )
+
+
+def write_cameras(raw: Path) -> None:
+    lines = (raw / "cameras_380_780_5nm.csv").read_text(encoding="utf-8").splitlines()
+    head, *rows = csv.reader(line for line in lines if not line.startswith("#"))
+    columns = [head.index(str(band)) for band in BANDS]
+    write(
+        "cameras.csv",
+        "spectral sensitivities, Academy Software Foundation rawtoaces-data, Apache-2.0",
+        ("camera", "channel", *(str(band) for band in BANDS)),
+        [[row[0], row[1], *(float(row[column]) for column in columns)] for row in rows],
+    )
+
+
+def write(name: str, source: str, head: Sequence[str], rows: Iterable[Sequence[object]]) -> None:
+    with (TARGET / name).open("w", newline="", encoding="utf-8") as file:
+        file.write(f"# {source}\n")
+        writer = csv.writer(file, lineterminator="\n")
+        writer.writerow(head)
+        for row in rows:
+            writer.writerow([f"{x:.8g}" if isinstance(x, float) else x for x in row])
+
+
+if __name__ == "__main__":
+    main(Path(sys.argv[1]))

@@ -1,0 +1,1 @@
+"""Training of the autoencoder; Lightning lives here and nowhere else."""

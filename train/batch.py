@@ -1,0 +1,21 @@
+"""What a training step is given."""
+
+from typing import NamedTuple
+
+from torch import Tensor
+
+from skinnet.autoencoder import SkinMaps
+from skinnet.capture import Capture
+
+
+class Batch(NamedTuple):
+    """Photographs in display sRGB [batch, 3, height, width], and what is known of them.
+
+    `mask` is the skin mask, true or estimated. `truth` and `capture` are there for synthetic
+    portraits only.
+    """
+
+    photograph: Tensor
+    mask: Tensor
+    truth: SkinMaps | None = None
+    capture: Capture | None = None

@@ -1,0 +1,129 @@
+"""`python -m train fit | validate | test --config configs/NAME.yaml`."""
+
+import sys
+import warnings
+from collections.abc import Sequence
+from pathlib import Path
+from typing import Any
+
+from lightning import LightningDataModule, Trainer
+from lightning.pytorch.callbacks import (
+    LearningRateMonitor,
+    ModelCheckpoint,
+    RichProgressBar,
+    TQDMProgressBar,
+)
+from lightning.pytorch.cli import LightningArgumentParser, LightningCLI
+from lightning.pytorch.loggers import TensorBoardLogger
+from lightning.pytorch.utilities.exceptions import MisconfigurationException
+
+from skinnet.checkpoint import read_checkpoint
+from skinnet.errors import InputError
+from train.callbacks import LastCheckpoint, PictureGrid
+from train.logs import CurveLogger
+from train.portraits import Portraits
+from train.synthetic import SyntheticFaces
+from train.task import SkinTask
+
+__all__ = ["Portraits", "SkinCLI", "SyntheticFaces", "main"]
+
+
+class SkinCLI(LightningCLI):
+    """LightningCLI with one fixed run directory and no silent restarts."""
+
+    def add_arguments_to_parser(self, parser: LightningArgumentParser) -> None:
+        parser.add_argument(
+            "--run", type=str, default="runs/run", help="Folder of checkpoints, curves, pictures."
+        )
+
+    @staticmethod
+    def subcommands() -> dict[str, set[str]]:
+        kept = ("fit", "validate", "test")
+        return {name: LightningCLI.subcommands()[name] for name in kept}
+
+    def _parse_ckpt_path(self) -> None:
+        # Lightning would let the checkpoint's hyper-parameters override the configuration.
+        check_checkpoint(self.config.subcommand, self.config[self.config.subcommand].ckpt_path)
+
+    def before_instantiate_classes(self) -> None:
+        config = self.config[self.subcommand]
+        # Loading goes through weights_only: a checkpoint is data, never a pickle.
+        config.weights_only = True
+        if self.subcommand == "fit" and config.ckpt_path is None:
+            keep_previous(Path(config.run))
+
+    def instantiate_trainer(self, **kwargs: Any) -> Trainer:
+        run = self.config[self.subcommand].run
+        loggers = [TensorBoardLogger(run, name="", version=""), CurveLogger(run)]
+        best = ModelCheckpoint(
+            run,
+            "best",
+            monitor="val/loss",
+            enable_version_counter=False,
+            save_on_train_epoch_end=False,
+        )
+        callbacks = [best, LastCheckpoint(run), PictureGrid(run), LearningRateMonitor()]
+        callbacks += kwargs.pop("callbacks", None) or []
+        if self.config[self.subcommand].trainer.enable_progress_bar is not False:
+            callbacks.append(_bar())
+        return super().instantiate_trainer(
+            logger=loggers, callbacks=callbacks, default_root_dir=run, **kwargs
+        )
+
+
+def check_checkpoint(subcommand: str, path: str | None) -> None:
+    """Raise `InputError` unless the checkpoint that a command needs is there and ours."""
+    if path is None:
+        if subcommand != "fit":
+            raise InputError(f"{subcommand} needs a trained model: add --ckpt_path RUN/best.ckpt.")
+    else:
+        read_checkpoint(path)
+
+
+def keep_previous(run: Path) -> None:
+    """Rename a finished or broken-off run to the next free number, so that nothing is lost."""
+    if not run.is_dir() or not any(run.iterdir()):
+        return
+    number = next(n for n in range(1, 10**6) if not run.with_name(f"{run.name}.{n}").exists())
+    kept = run.with_name(f"{run.name}.{number}")
+    run.rename(kept)
+    print(f"{run} holds an earlier run; it is kept as {kept}.", file=sys.stderr)
+
+
+def _bar() -> RichProgressBar | TQDMProgressBar:
+    # Off a terminal Rich shows its last frame only.
+    return RichProgressBar() if sys.stderr.isatty() else TQDMProgressBar(refresh_rate=50)
+
+
+_NOISE = (
+    "LightningCLI's args parameter is intended",  # the tests' way in
+    r"(?s)\s*.*was deprecated in v4",  # Lightning uses it
+    r"\s*By default only one JsonargparseDeprecationWarning",
+    "The '.*_dataloader' does not have many workers",  # drawing scenes is a small part of a step
+    r"`isinstance.treespec, LeafSpec.` is deprecated",
+    "Precision bf16-mixed is not supported by the model summary",
+    "Checkpoint directory .* exists and is not empty",  # the run folder, on purpose
+    "The number of training batches .* is smaller than the logging interval",
+)
+"""Warnings of Lightning's about what is meant to be so."""
+
+
+def main(arguments: Sequence[str] | None = None) -> int:
+    """Run a training command; 0 on success, 2 with a sentence on stderr for bad input."""
+    try:
+        with warnings.catch_warnings():
+            for message in _NOISE:
+                warnings.filterwarnings("ignore", message)
+            SkinCLI(
+                SkinTask,
+                LightningDataModule,
+                subclass_mode_data=True,
+                seed_everything_default=0,
+                save_config_kwargs={"overwrite": True},
+                args=list(arguments) if arguments is not None else None,
+                parser_kwargs={"prog": "python -m train"},
+            )
+    except (InputError, MisconfigurationException) as error:
+        print(f"train: {error}", file=sys.stderr)
+        return 2
+    return 0

@@ -1,0 +1,40 @@
+"""Loss curves as one growing CSV file."""
+
+import csv
+from pathlib import Path
+from typing import Any
+
+from lightning.pytorch.loggers import Logger
+
+
+class CurveLogger(Logger):
+    """Appends a line `step,metric,value` to `metrics.csv` for every number logged.
+
+    Lightning's own CSVLogger deletes the file when a run is resumed.
+    """
+
+    def __init__(self, folder: str):
+        super().__init__()
+        self.path = Path(folder) / "metrics.csv"
+
+    @property
+    def name(self) -> str:
+        return "curves"
+
+    @property
+    def version(self) -> str:
+        return ""
+
+    def log_hyperparams(self, *args: Any, **kwargs: Any) -> None:
+        """The configuration is saved as config.yaml."""
+
+    def log_metrics(self, metrics: dict[str, float], step: int | None = None) -> None:
+        """Append each metric of this step."""
+        new = not self.path.exists()
+        self.path.parent.mkdir(parents=True, exist_ok=True)
+        with self.path.open("a", newline="") as file:
+            writer = csv.writer(file, lineterminator="\n")
+            if new:
+                writer.writerow(("step", "metric", "value"))
+            for name, value in metrics.items():
+                writer.writerow((step, name, f"{value:.6g}"))

@@ -1,0 +1,187 @@
+"""Training steps: by appearance always, by maps where there is truth."""
+
+import math
+from dataclasses import dataclass
+from typing import Any
+
+import torch
+from jsonargparse.typing import NonNegativeFloat, NonNegativeInt, PositiveFloat, PositiveInt
+from kornia.color import rgb_to_linear_rgb
+from lightning import LightningModule
+from torch import Tensor
+from torch.optim import AdamW, Optimizer
+from torch.optim.lr_scheduler import LambdaLR
+
+from skinnet import losses
+from skinnet.autoencoder import AutoencoderConfig, Reading, SkinAutoencoder
+from skinnet.checkpoint import describe
+from skinnet.encoder import WIDTHS
+from skinnet.errors import InputError
+from skinnet.weights import read_weights
+from train.batch import Batch
+from train.metrics import measure
+
+Batches = Batch | dict[str, Batch]
+"""One kind of data, or several that each step sees together."""
+
+
+@dataclass
+class LossWeights:
+    """Weight of each loss; those that need truth count on synthetic portraits only."""
+
+    appearance: NonNegativeFloat = 4.0
+    elsewhere: NonNegativeFloat = 0.2
+    mask: NonNegativeFloat = 0.3
+    offset: NonNegativeFloat = 1.0
+    camera: NonNegativeFloat = 0.005
+    specular: NonNegativeFloat = 0.02
+    smoothness: NonNegativeFloat = 0.02
+    shading: NonNegativeFloat = 0.02
+    pigments: NonNegativeFloat = 2.0
+    lighting: NonNegativeFloat = 1.0
+    white_balance: NonNegativeFloat = 0.05
+
+
+class SkinTask(LightningModule):
+    """Trains a `SkinAutoencoder`.
+
+    Args:
+        optics: preset of the skin's optical constants.
+        widths: channels of the encoder at each level.
+        working_size: longer side in pixels of the crops that the model is to be used on.
+        losses: weight of each loss.
+        learning_rate: largest learning rate of AdamW, reached after the warm-up.
+        weight_decay: of AdamW.
+        warmup_steps: steps in which the learning rate rises; it falls as a cosine to zero after.
+        weights: a .safetensors file to start from (fine-tuning). To go on with a run, use
+            --ckpt_path instead.
+    """
+
+    def __init__(
+        self,
+        optics: str = "calibrated",
+        widths: list[PositiveInt] = list(WIDTHS),  # noqa: B006 - read, never written
+        working_size: PositiveInt = 128,
+        losses: LossWeights = LossWeights(),  # noqa: B008 - read, never written
+        learning_rate: PositiveFloat = 2e-3,
+        weight_decay: NonNegativeFloat = 1e-4,
+        warmup_steps: NonNegativeInt = 50,
+        weights: str | None = None,
+    ):
+        super().__init__()
+        model = SkinAutoencoder(
+            AutoencoderConfig(optics, tuple(map(int, widths)), int(working_size))
+        )
+        # A third faster on a CPU.
+        self.model = model.to(memory_format=torch.channels_last)
+        self.weight_of = losses
+        # Plain numbers: restricted ones end in the optimizer's state, which weights_only refuses.
+        self.learning_rate = float(learning_rate)
+        self.weight_decay = float(weight_decay)
+        self.warmup_steps = int(warmup_steps)
+        if weights is not None:
+            self._start_from(weights)
+
+    def _start_from(self, path: str) -> None:
+        _, state = read_weights(path)
+        try:
+            self.model.load_state_dict(state)
+        except RuntimeError as error:
+            raise InputError(
+                f"{path} holds weights of another shape than this configuration's; give the widths "
+                "that it was trained with."
+            ) from error
+
+    def forward(self, photograph: Tensor) -> Reading:
+        """Read photographs; the trunk runs in the trainer's precision, the physics in float32."""
+        photograph = photograph.contiguous(memory_format=torch.channels_last)
+        maps, capture = self.model.encode(photograph)
+        with torch.autocast(photograph.device.type, enabled=False):
+            return Reading(maps, capture, self.model.decode(maps, capture))
+
+    def training_step(self, batch: Batches, batch_idx: int) -> Tensor:
+        _, total, parts = self._losses(batch)
+        size = _size(batch)
+        self.log_dict({f"train/{name}": value for name, value in parts.items()}, batch_size=size)
+        self.log("train/loss", total, prog_bar=True, batch_size=size)
+        return total
+
+    def validation_step(self, batch: Batches, batch_idx: int) -> dict[str, Reading]:
+        return self._evaluate(batch, "val")
+
+    def test_step(self, batch: Batches, batch_idx: int) -> dict[str, Reading]:
+        return self._evaluate(batch, "test")
+
+    def _evaluate(self, batch: Batches, split: str) -> dict[str, Reading]:
+        readings, total, _ = self._losses(batch)
+        self.log(f"{split}/loss", total, batch_size=_size(batch))
+        for name, part in by_name(batch).items():
+            found = measure(readings[name], part)
+            named = {f"{split}/{name}_{metric}": value for metric, value in found.items()}
+            self.log_dict(named, batch_size=len(part.photograph))
+        return readings
+
+    def _losses(self, batch: Batches) -> tuple[dict[str, Reading], Tensor, dict[str, Tensor]]:
+        readings, parts = {}, {}
+        total = torch.zeros((), device=self.device)
+        for name, part in by_name(batch).items():
+            readings[name] = self(part.photograph)
+            with torch.autocast(part.photograph.device.type, enabled=False):
+                for term, value in terms(readings[name], part).items():
+                    parts[f"{name}_{term}"] = value
+                    total = total + getattr(self.weight_of, term) * value
+        return readings, total, parts
+
+    def configure_optimizers(self) -> dict[str, Any]:
+        optimizer: Optimizer = AdamW(
+            self.parameters(), lr=self.learning_rate, weight_decay=self.weight_decay
+        )
+        steps = max(int(self.trainer.estimated_stepping_batches), 1)
+        schedule = LambdaLR(optimizer, lambda step: one_cycle(step, self.warmup_steps, steps))
+        return {
+            "optimizer": optimizer,
+            "lr_scheduler": {"scheduler": schedule, "interval": "step"},
+        }
+
+    def on_save_checkpoint(self, checkpoint: dict[str, Any]) -> None:
+        data = getattr(self.trainer.datamodule, "described", "unknown data")
+        trained_on = f"{data}; {self.global_step} steps"
+        checkpoint["skinnet"] = describe(self.model.config, trained_on)
+
+
+def by_name(batch: Batches) -> dict[str, Batch]:
+    """The batches of a step by the kind of their data."""
+    return batch if isinstance(batch, dict) else {"synthetic": batch}
+
+
+def _size(batch: Batches) -> int:
+    return sum(len(part.photograph) for part in by_name(batch).values())
+
+
+def terms(reading: Reading, batch: Batch) -> dict[str, Tensor]:
+    """Every loss that this batch allows, by its name in `LossWeights`."""
+    linear = rgb_to_linear_rgb(batch.photograph)
+    maps, mask = reading.maps, batch.mask
+    parts = {
+        "appearance": losses.appearance(reading.reconstruction, linear, mask),
+        "elsewhere": losses.appearance(reading.reconstruction, linear, 1 - mask),
+        "mask": losses.skin_mask(maps, mask),
+        "offset": losses.offset_penalty(maps, mask),
+        "camera": losses.camera_prior(reading.capture),
+        "specular": losses.specular_sparsity(maps, mask),
+        "smoothness": losses.shading_smoothness(maps, mask),
+        "shading": losses.shading_pseudo(maps, linear, mask),
+    }
+    if batch.truth is not None and batch.capture is not None:
+        parts["pigments"] = losses.pigments(maps, batch.truth)
+        parts["lighting"] = losses.lighting(maps, batch.truth)
+        parts["white_balance"] = losses.white_balance(reading.capture, batch.capture)
+    return parts
+
+
+def one_cycle(step: int, warmup: int, steps: int) -> float:
+    """Share of the largest learning rate: a linear rise, then half a cosine to zero."""
+    if step < warmup:
+        return (step + 1) / (warmup + 1)
+    done = min((step - warmup) / max(steps - warmup, 1), 1.0)
+    return 0.5 * (1 + math.cos(math.pi * done))
