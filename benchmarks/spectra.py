@@ -195,12 +195,17 @@ def _measure(target: Tensor, radii: tuple[float, ...]) -> Results:
 
 
 def colour_alone(target: Tensor) -> Results:
-    """Recovery from linear sRGB: scale from the colour, scored up to scale, scale held near one."""
+    """Recovery from linear sRGB under D65.
+
+    `rgb` is scored with a free scale: a photograph's colour gives the shape of a spectrum, and its
+    level only as far as the exposure is known. `rgb_own_scale` takes the scale from the colour too,
+    and `rgb_scale_near_one` weighs it against one.
+    """
     rgb = target @ d65_matrix()
     free, stiff = from_rgb(rgb), from_rgb(rgb, STIFFNESS)
     return {
-        "rgb": _spread(rmse(free, target)),
-        "rgb_up_to_scale": _spread(rmse(up_to_scale(free, target), target)),
+        "rgb": _spread(rmse(up_to_scale(free, target), target)),
+        "rgb_own_scale": _spread(rmse(free, target)),
         "rgb_scale_near_one": _spread(rmse(stiff, target)),
     }
 

@@ -21,6 +21,7 @@ WHITE_BALANCE_SD = 0.05
 """Spread of the errors of a camera's white balance in log R/G and log B/G."""
 
 _DARKEST = 1e-3
+_FAINT = 1e-4
 
 
 def appearance(reconstruction: Image, photograph: Image, weight: Map) -> Scalar:
@@ -80,10 +81,13 @@ def pigments(maps: SkinMaps, truth: SkinMaps) -> Scalar:
 
 
 def lighting(maps: SkinMaps, truth: SkinMaps) -> Scalar:
-    """Mean absolute error of shading, specular and offset."""
+    """Mean absolute error of shading, offset, and the square root of specular.
+
+    The root keeps faint gloss alive: in plain values the best guess of an unsure network is none.
+    """
     offset = (maps.offset - truth.offset).abs().mean(1)
-    specular = (maps.specular - truth.specular).abs()
-    return (offset + specular + (maps.shading - truth.shading).abs()).mean()
+    gloss = (maps.specular + _FAINT).sqrt() - (truth.specular + _FAINT).sqrt()
+    return (offset + gloss.abs() + (maps.shading - truth.shading).abs()).mean()
 
 
 def white_balance(capture: Capture, truth: Capture) -> Scalar:

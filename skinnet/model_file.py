@@ -118,6 +118,7 @@ def _described(
 ) -> ModelFile:
     try:
         notes_on = json.loads(notes["skinnet.outputs"])
+        named = (*MAPS, "mask") if notes["skinnet.kind"] == "encoder" else ()
         size = int(notes["skinnet.working_size"])
         if size < 1:
             raise ValueError(f"working size {size}")
@@ -128,7 +129,7 @@ def _described(
             notes["skinnet.trained_on"],
             size,
             tuple(json.loads(notes["skinnet.lights"])),
-            {name: _output(notes_on[name]) for name in (*MAPS, "mask")},
+            {name: _output(notes_on[name]) for name in named},
         )
     except (KeyError, ValueError, TypeError, AttributeError) as error:
         raise InputError(f"The metadata of {path} is damaged ({error!r}); {_REMEDY}.") from error

@@ -24,6 +24,11 @@ _GLOSS = ((18, 20, 34), (60, 92, 150), (160, 200, 226), (255, 255, 255))
 
 Anchors = Sequence[tuple[int, int, int]]
 
+_PIGMENTS: dict[str, tuple[str, Anchors]] = {
+    "melanin": ("melanosome volume fraction", _MELANIN),
+    "hemoglobin": ("blood volume fraction", _HEMOGLOBIN),
+}
+
 
 def panel(photo: NDArray[np.uint8], decomposition: Decomposition) -> NDArray[np.uint8]:
     """The box of a photograph and of its decomposition in a 4 x 2 grid, uint8 sRGB [h, w, 3].
@@ -31,21 +36,26 @@ def panel(photo: NDArray[np.uint8], decomposition: Decomposition) -> NDArray[np.
     `photo` is the uint8 sRGB [H, W, 3] that was decomposed. Melanin and hemoglobin are shown where
     there is skin, each on a scale from zero to a round number above nearly all of its values.
     """
-    sheet = Image.new("RGB", _corner(4, 2), _PAPER)
     tiles = (
-        _picture("photograph", photo[decomposition.box.slices]),
-        _pigment(decomposition, "melanin", "melanosome volume fraction", _MELANIN),
-        _pigment(decomposition, "hemoglobin", "blood volume fraction", _HEMOGLOBIN),
+        picture("photograph", photo[decomposition.box.slices]),
+        pigment(decomposition, "melanin"),
+        pigment(decomposition, "hemoglobin"),
         _plain_map(decomposition, "shading", "relative to the light", _GREY),
-        _picture("reconstruction", decomposition.reconstruction[decomposition.box.slices]),
+        picture("reconstruction", decomposition.reconstruction[decomposition.box.slices]),
         _plain_map(decomposition, "specular", "relative to the light", _GLOSS),
         _plain_map(decomposition, "mask", "how surely skin", _GREY),
         _offset(decomposition),
     )
+    return sheet(tiles, 4)
+
+
+def sheet(tiles: Sequence[Image.Image], columns: int) -> NDArray[np.uint8]:
+    """Tiles in rows of that many, uint8 sRGB [h, w, 3]."""
+    paper = Image.new("RGB", _corner(columns, math.ceil(len(tiles) / columns)), _PAPER)
     for index, tile in enumerate(tiles):
-        row, column = divmod(index, 4)
-        sheet.paste(tile, _corner(column, row))
-    return np.array(sheet)
+        row, column = divmod(index, columns)
+        paper.paste(tile, _corner(column, row))
+    return np.array(paper)
 
 
 def colour_map(values: NDArray[np.float32], anchors: Anchors) -> NDArray[np.uint8]:
@@ -68,7 +78,9 @@ def _corner(column: int, row: int) -> tuple[int, int]:
     return _GAP + column * (TILE + _GAP), _GAP + row * (_CAPTION + TILE + _SCALE + _GAP)
 
 
-def _pigment(decomposition: Decomposition, name: str, unit: str, anchors: Anchors) -> Image.Image:
+def pigment(decomposition: Decomposition, name: str) -> Image.Image:
+    """A tile of `melanin` or `hemoglobin` on skin, with its scale."""
+    unit, anchors = _PIGMENTS[name]
     values = decomposition.maps()[name][decomposition.box.slices]
     mask = decomposition.mask[decomposition.box.slices]
     top = _top(values[mask > SKIN])
@@ -95,8 +107,9 @@ def _top(values: NDArray[np.float32]) -> float:
     return round_top(float(np.percentile(values, 99))) if values.size else 1.0
 
 
-def _picture(caption: str, picture: NDArray[np.uint8]) -> Image.Image:
-    return _tile(caption, picture)
+def picture(caption: str, pixels: NDArray[np.uint8]) -> Image.Image:
+    """A tile of a picture, uint8 sRGB [h, w, 3]."""
+    return _tile(caption, pixels)
 
 
 def _tile(

@@ -32,12 +32,12 @@ class LossWeights:
     appearance: NonNegativeFloat = 4.0
     elsewhere: NonNegativeFloat = 0.2
     mask: NonNegativeFloat = 0.3
-    offset: NonNegativeFloat = 1.0
+    offset: NonNegativeFloat = 2.0
     camera: NonNegativeFloat = 0.005
-    specular: NonNegativeFloat = 0.02
+    specular: NonNegativeFloat = 0.01
     smoothness: NonNegativeFloat = 0.02
     shading: NonNegativeFloat = 0.02
-    pigments: NonNegativeFloat = 2.0
+    pigments: NonNegativeFloat = 4.0
     lighting: NonNegativeFloat = 1.0
     white_balance: NonNegativeFloat = 0.05
 

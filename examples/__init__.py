@@ -1,0 +1,1 @@
+"""Narrated scripts whose pictures go into the documentation."""
