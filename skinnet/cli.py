@@ -48,7 +48,7 @@ def _add_predict(verbs: "argparse._SubParsersAction[argparse.ArgumentParser]") -
         "input", nargs="+", help="photographs, a folder of them, or - for standard input"
     )
     verb.add_argument(
-        "-o", "--output", type=Path, metavar="DIR", help="default: skinnet/ beside the photograph"
+        "-o", "--output", type=Path, metavar="DIR", help="default: skinmaps beside the photograph"
     )
     verb.add_argument("--json", action="store_true", help="print the numbers, one object a line")
     _add_common(verb)
@@ -165,7 +165,7 @@ def _inside(folder: Path) -> list[str | InputError]:
 
 def _place(source: str, output: Path | None, taken: set[tuple[Path, str]]) -> tuple[Path, str]:
     """Folder and stem of a photograph's files, the stem counted on if this run has used it."""
-    folder = output or _beside(source).parent / "skinnet"
+    folder = output or _beside(source).parent / "skinmaps"
     stem = _stem(source)
     number = 1
     while (folder, stem.casefold()) in taken:

@@ -10,7 +10,8 @@ from train.batch import Batch
 
 def measure(reading: Reading, batch: Batch) -> dict[str, Tensor]:
     """Errors over skin: `reconstruction` RMSE in linear sRGB, `mask_iou`, and where there is truth
-    the RMSE of `melanin` and `hemoglobin` in volume fractions and their correlation `_r`."""
+    the RMSE of `melanin` and `hemoglobin` in volume fractions, their correlation `_r`, and the RMSE
+    that the best constant would have, `_constant`."""
     skin = batch.mask > 0.5
     linear = rgb_to_linear_rgb(batch.photograph)
     error = ((reading.reconstruction - linear) ** 2).mean(1)
@@ -22,6 +23,7 @@ def measure(reading: Reading, batch: Batch) -> dict[str, Tensor]:
         for name in ("melanin", "hemoglobin"):
             guess, truth = getattr(reading.maps, name)[skin], getattr(batch.truth, name)[skin]
             found[name] = ((guess - truth) ** 2).mean().sqrt()
+            found[f"{name}_constant"] = truth.std(correction=0)
             found[f"{name}_r"] = torch.corrcoef(torch.stack([guess, truth]))[0, 1]
     return found
 

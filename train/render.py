@@ -13,6 +13,7 @@ from skinnet.decoder import SkinDecoder, srgb
 from skinnet.shape.procedural import Surface, sample, surface, unit
 from train.batch import Batch
 from train.body import Body, draw_body
+from train.brush import column
 from train.texture import Textures, paint_head
 
 CHART_SIZE = (112, 136)
@@ -36,7 +37,7 @@ def render(scene: dict[str, Tensor], decoder: SkinDecoder) -> Batch:
     )
     shading, specular = _shade(scene, normal, oil, shade)
     other = paint * torch.where(view.inside > 0.5, shading, 1 - body.lit + body.lit * shading)
-    other = (other + 0.5 * specular * view.inside) * _column(scene["exposure"]).sqrt()
+    other = (other + 0.5 * specular * view.inside) * column(scene["exposure"]).sqrt()
     truth = SkinMaps(
         melanin[:, 0],
         hemoglobin[:, 0],
@@ -66,7 +67,7 @@ def _trace(scene: dict[str, Tensor], head: Surface) -> _View:
     ramp = (torch.arange(size, device=scene["grain"].device) * 2 + 1) / size - 1
     y, x = torch.meshgrid(-ramp, ramp, indexing="ij")
     position = torch.stack([x, y]) - scene["centre"][:, :, None, None]
-    position = position / _column(scene["zoom"])
+    position = position / column(scene["zoom"])
     squared = (position**2).sum(1, keepdim=True)
     radius = torch.ones_like(squared)
     turn = _rotation(scene)
@@ -75,7 +76,7 @@ def _trace(scene: dict[str, Tensor], head: Surface) -> _View:
         point = torch.einsum("bji,bjhw->bihw", turn, torch.cat([position, depth], 1))
         direction = point / (squared + depth**2).sqrt()
         radius = sample(head.radius, direction)
-    pixels = (radius - squared.sqrt()) * _column(scene["zoom"]) * size / 2
+    pixels = (radius - squared.sqrt()) * column(scene["zoom"]) * size / 2
     return _View(position, direction, (pixels + 0.5).clamp(0, 1))
 
 
@@ -101,8 +102,8 @@ def _merge(
     share = (inside * (1 - cover) + (1 - inside) * body.neck).clamp(0, 1)
     paint = inside * cover * paint + (1 - inside) * (1 - body.neck) * body.paint
     return (
-        torch.where(hit, melanin, _column(scene["f_mel"])),
-        torch.where(hit, hemoglobin, _column(scene["f_blood"])),
+        torch.where(hit, melanin, column(scene["f_mel"])),
+        torch.where(hit, hemoglobin, column(scene["f_blood"])),
         paint / (1 - share).clamp_min(1e-3),
         share,
         torch.where(hit, normal, body.normal),
@@ -116,16 +117,16 @@ def _shade(
 ) -> tuple[Tensor, Tensor]:
     """Diffuse shading under a first-order sky and three lamps, and Blinn-Phong highlights."""
     sky = scene["sky"]
-    ambient = _column(sky[:, 0]) + torch.einsum("bi,bihw->bhw", sky[:, 1:], normal)[:, None]
+    ambient = column(sky[:, 0]) + torch.einsum("bi,bihw->bhw", sky[:, 1:], normal)[:, None]
     half = F.normalize(scene["lamps"] + sky.new_tensor([0, 0, 1]), dim=2)
     facing = torch.einsum("bli,bihw->blhw", scene["lamps"], normal).clamp_min(0)
     glint = torch.einsum("bli,bihw->blhw", half, normal).clamp_min(0)
     strength = scene["strength"][:, :, None, None]
-    sharpness = _column(scene["sharpness"])
+    sharpness = column(scene["sharpness"])
     diffuse = (ambient.clamp_min(0.05) + (strength * facing).sum(1, keepdim=True)) * shade
     lobe = (strength * glint**sharpness * (facing > 0)).sum(1, keepdim=True)
-    specular = _column(scene["oil"]) * oil * lobe * (1 + sharpness / 8)
-    exposure = _column(scene["exposure"])
+    specular = column(scene["oil"]) * oil * lobe * (1 + sharpness / 8)
+    exposure = column(scene["exposure"])
     return diffuse * exposure, (specular * exposure).clamp_max(1)
 
 
@@ -133,7 +134,3 @@ def _photograph(scene: dict[str, Tensor], linear: Tensor) -> Tensor:
     sigma = (scene["blur"] * linear.shape[-1] / 128 + 0.05)[:, None].expand(-1, 2)
     display = srgb(gaussian_blur2d(linear, 5, sigma)) + scene["grain"]
     return (display.clamp(0, 1) * 255).round() / 255
-
-
-def _column(value: Tensor) -> Tensor:
-    return value[:, None, None, None]

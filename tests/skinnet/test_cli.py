@@ -51,7 +51,7 @@ def test_predict_writes_beside_the_photograph(
     predict: Predict, photo: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
     assert predict(photo) == 0
-    assert names(photo.parent / "skinnet") == FILES
+    assert names(photo.parent / "skinmaps") == FILES
     out, err = capsys.readouterr()
     assert (
         out.startswith(f"{photo}: melanin 0.0") and "11 files" in out and len(out.split("\n")) == 2
@@ -86,7 +86,7 @@ def test_no_skin_is_null_and_said(
 ) -> None:
     assert main(["predict", str(photo), "--model", str(skinless_file)]) == 0
     assert "no skin was found" in capsys.readouterr().out
-    summary = json.loads((photo.parent / "skinnet" / "a.json").read_text())
+    summary = json.loads((photo.parent / "skinmaps" / "a.json").read_text())
     assert summary["maps"]["melanin"]["mean"] is None
 
 
@@ -115,7 +115,7 @@ def test_a_folder_goes_on_after_a_bad_file(
     (folder / "notes.txt").write_text("not looked at")
     (folder / "z.jpg").mkdir()
     assert predict(folder) == 2
-    assert names(folder / "skinnet") == FILES
+    assert names(folder / "skinmaps") == FILES
     out, err = capsys.readouterr()
     assert len(out.splitlines()) == 1
     empty, truncated = err.splitlines()
@@ -131,7 +131,7 @@ def test_a_list_goes_on_after_a_bad_file(
     missing, empty = capsys.readouterr().err.splitlines()
     assert missing == f"skinnet: There is no file {tmp_path / 'no.jpg'}; check the path."
     assert empty.startswith(f"skinnet: The folder {tmp_path / 'empty'} holds no photographs; they")
-    assert names(tmp_path / "skinnet") == FILES
+    assert names(tmp_path / "skinmaps") == FILES
 
 
 def test_no_face_names_the_way_on(
@@ -152,8 +152,10 @@ def test_standard_input_is_a_photograph(
     monkeypatch.chdir(tmp_path)
     monkeypatch.setattr(sys, "stdin", io.TextIOWrapper(io.BytesIO(photo.read_bytes())))
     assert predict("-") == 0
-    assert "stdin_panel.png" in names(tmp_path / "skinnet")
-    assert json.loads((tmp_path / "skinnet" / "stdin.json").read_text())["file"] == "standard input"
+    assert "stdin_panel.png" in names(tmp_path / "skinmaps")
+    assert (
+        json.loads((tmp_path / "skinmaps" / "stdin.json").read_text())["file"] == "standard input"
+    )
 
 
 @pytest.mark.parametrize("verb", ["predict", "edit"])
