@@ -79,7 +79,7 @@ def _write(
     batch, height, width = Dim("batch"), Dim("height"), Dim("width")
     pixels = {0: batch, 1: height, 2: width}
     shapes = {name: pixels if name in (*PIXELS, "image") else {0: batch} for name in inputs}
-    with _quiet():
+    with quiet():
         program = torch.onnx.export(
             graph.eval(),
             tuple(inputs.values()),
@@ -96,7 +96,7 @@ def _write(
 
 
 @contextmanager
-def _quiet() -> Iterator[None]:
+def quiet() -> Iterator[None]:
     """Without the exporter's remarks on torchvision, its own deprecations and repeated axes."""
     logger = logging.getLogger("torch.onnx")
     level = logger.level

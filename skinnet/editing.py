@@ -7,8 +7,8 @@ from scipy import ndimage
 from skinnet.faces import Box, resize
 from skinnet.images import linear_to_srgb, srgb_to_linear, to_uint8
 
-UNTOUCHED = 0.02
-"""Pixels whose mask is below this keep their exact values."""
+UNTOUCHED, WHOLLY = 0.25, 0.75
+"""Masks between which an edit sets in; pixels below the first keep their exact values."""
 
 FADE = 0.08
 """Share of the box over which an edit fades out towards an edge inside the photograph."""
@@ -55,11 +55,12 @@ def apply_gain(
 ) -> NDArray[np.uint8]:
     """uint8 sRGB [H, W, 3] with the light from inside the skin multiplied by `gain` [h, w, 3].
 
-    edited = photo + mask (photo - specular)_+ (gain - 1) in linear sRGB; `specular` and `mask`
+    edited = photo + soft (photo - specular)_+ (gain - 1) in linear sRGB, where `soft` rises from 0
+    to 1 between masks of UNTOUCHED and WHOLLY; `specular` and `mask`
     [h, w] belong to the network's size, as `gain` does, and are brought to the crop's.
     """
     height, width = crop.shape[:2]
-    soft = resize(mask, width, height)
+    soft = ((resize(mask, width, height) - UNTOUCHED) / (WHOLLY - UNTOUCHED)).clip(0, 1)
     gloss = resize(specular, width, height)
     linear = srgb_to_linear(crop)
     edited = crop.copy()
@@ -68,4 +69,4 @@ def apply_gain(
         change = resize(np.ascontiguousarray(gain[..., channel]), width, height) - 1
         changed = photo + soft * np.maximum(photo - gloss, 0) * change
         edited[..., channel] = to_uint8(linear_to_srgb(changed))
-    return np.where(soft[..., None] < UNTOUCHED, crop, edited)
+    return np.where(soft[..., None] == 0, crop, edited)

@@ -8,6 +8,7 @@ import pytest
 import torch
 
 from benchmarks import decoder, report, spectra
+from benchmarks.biofacenet import BioFaceNetShape
 from skinnet.optics import PRESETS
 from skinnet.reflectance import SkinReflectance
 
@@ -98,3 +99,9 @@ def test_report_is_a_table_or_one_object(
     monkeypatch.setattr(sys, "argv", ["benchmark"])
     report.main(lambda: results, "")
     assert capsys.readouterr().out.split() == ["a.median", "0.25", "a.n", "3", "b", "0.0001"]
+
+
+def test_the_rival_network_has_four_maps_and_its_globals() -> None:
+    *maps, scene = BioFaceNetShape().eval()(torch.rand(1, 3, 32, 48))
+    assert [tuple(value.shape) for value in maps] == [(1, 1, 32, 48)] * 4
+    assert scene.shape == (1, 15)
