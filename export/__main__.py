@@ -24,6 +24,9 @@ def main(arguments: Sequence[str] | None = None) -> int:
     options = parser.parse_args(arguments)
     try:
         _export(options.checkpoint, options.output)
+    except ModuleNotFoundError as error:
+        print(f'export needs {error.name}: pip install -e ".[export]"', file=sys.stderr)
+        return 2
     except (InputError, OSError) as error:
         print(f"export: {error}", file=sys.stderr)
         return 2

@@ -86,7 +86,7 @@ class Portraits(LightningDataModule):
     @property
     def described(self) -> str:
         """What a model card says of these data."""
-        return f"{len(self.crops['train'])} photographs; {self.synthetic.described}"
+        return f"{len(self.crops['train'])} photographs and {self.synthetic.described}"
 
     def setup(self, stage: str) -> None:
         if self.crops:

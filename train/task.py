@@ -79,11 +79,10 @@ class SkinTask(LightningModule):
         self.learning_rate = float(learning_rate)
         self.weight_decay = float(weight_decay)
         self.warmup_steps = int(warmup_steps)
-        if weights is not None:
-            self._start_from(weights)
+        self.trained_on = "" if weights is None else f"{self._start_from(weights)}; then "
 
-    def _start_from(self, path: str) -> None:
-        _, state = read_weights(path)
+    def _start_from(self, path: str) -> str:
+        metadata, state = read_weights(path)
         try:
             self.model.load_state_dict(state)
         except RuntimeError as error:
@@ -91,6 +90,7 @@ class SkinTask(LightningModule):
                 f"{path} holds weights of another shape than this configuration's; give the widths "
                 "that it was trained with."
             ) from error
+        return metadata["skinnet.trained_on"]
 
     def forward(self, photograph: Tensor) -> Reading:
         """Read photographs; the trunk runs in the trainer's precision, the physics in float32."""
@@ -145,7 +145,7 @@ class SkinTask(LightningModule):
 
     def on_save_checkpoint(self, checkpoint: dict[str, Any]) -> None:
         data = getattr(self.trainer.datamodule, "described", "unknown data")
-        trained_on = f"{data}; {self.global_step} steps"
+        trained_on = f"{self.trained_on}{data}, {self.global_step} steps"
         checkpoint["skinnet"] = describe(self.model.config, trained_on)
 
 

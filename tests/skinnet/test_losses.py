@@ -1,0 +1,89 @@
+"""Losses are zero where they should be, and say what they mean."""
+
+import pytest
+import torch
+
+from skinnet import losses
+from skinnet.autoencoder import SkinMaps
+from skinnet.capture import Capture
+
+
+def maps(**changes: torch.Tensor) -> SkinMaps:
+    plain = torch.full((2, 8, 8), 0.05)
+    found = SkinMaps(
+        plain, plain, torch.ones(2, 8, 8), 0 * plain, torch.zeros(2, 3, 8, 8), torch.ones(2, 8, 8)
+    )
+    return found._replace(**changes)
+
+
+def capture(camera: float = 0.0, balance: float = 0.0) -> Capture:
+    return Capture(
+        torch.full((2, 9), 1 / 9),
+        torch.full((2,), 6500.0),
+        torch.full((2, 6), camera),
+        torch.full((2, 2), balance),
+    )
+
+
+def test_a_perfect_reading_costs_nothing() -> None:
+    truth = maps()
+    photograph = torch.rand(2, 3, 8, 8)
+    ones = torch.ones(2, 8, 8)
+    assert losses.appearance(photograph, photograph, ones) == 0
+    assert losses.pigments(truth, truth) == 0 and losses.lighting(truth, truth) == 0
+    assert losses.camera_prior(capture()) == 0
+    assert losses.offset_penalty(truth, ones) == 0
+    assert losses.shading_smoothness(truth, ones) == 0
+    assert losses.skin_mask(truth, ones) == pytest.approx(0, abs=1e-5)
+
+
+def test_appearance_counts_where_the_weight_is() -> None:
+    photograph = torch.zeros(2, 3, 8, 8)
+    weight = torch.zeros(2, 8, 8)
+    weight[:, :4] = 1
+    wrong = photograph.clone()
+    wrong[:, :, 4:] = 9
+    assert losses.appearance(wrong, photograph, weight) == 0
+    assert losses.appearance(photograph + 0.25, photograph, weight) == pytest.approx(0.25)
+
+
+def test_pigments_are_compared_in_cube_roots() -> None:
+    truth, guess = maps(), maps(melanin=torch.full((2, 8, 8), 8 * 0.05))
+    root = (0.05 / 0.43) ** (1 / 3)
+    assert losses.pigments(guess, truth).item() == pytest.approx(root, abs=1e-4)
+
+
+def test_shading_pseudo_leaves_the_level_open() -> None:
+    photograph = torch.full((2, 3, 8, 8), 0.2)
+    for level in (0.3, 3.0):
+        found = maps(shading=torch.full((2, 8, 8), level))
+        assert losses.shading_pseudo(found, photograph, torch.ones(2, 8, 8)) < 1e-5
+
+
+def test_priors_grow_with_what_they_restrain() -> None:
+    assert losses.camera_prior(capture(camera=1.0)).item() == pytest.approx(0.5)
+    assert losses.camera_prior(capture(balance=0.05)).item() == pytest.approx(0.5)
+    ones = torch.ones(2, 8, 8)
+    assert losses.specular_sparsity(maps(specular=0.2 * ones), ones).item() == pytest.approx(0.2)
+    assert losses.offset_penalty(maps(offset=torch.full((2, 3, 8, 8), -0.1)), ones) > 0.09
+    assert losses.offset_penalty(maps(), 0 * ones) == 1
+
+
+def test_white_balance_is_in_units_of_its_spread() -> None:
+    found = losses.white_balance(capture(balance=0.05), capture())
+    assert found.item() == pytest.approx(1)
+
+
+def test_gradients_are_finite_at_the_edges() -> None:
+    zero = torch.zeros(2, 8, 8)
+    truth = maps(specular=zero)
+    guess = [value.clone().requires_grad_() for value in maps(melanin=zero, shading=zero)]
+    found = SkinMaps(*guess)
+    total = (
+        losses.pigments(found, truth)
+        + losses.lighting(found, truth)
+        + losses.shading_smoothness(found, truth.mask)
+        + losses.skin_mask(found, 0 * truth.mask)
+    )
+    for gradient in torch.autograd.grad(total, guess, allow_unused=True):
+        assert gradient is None or gradient.isfinite().all()

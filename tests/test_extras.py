@@ -1,0 +1,22 @@
+"""Commands that need an extra say how to install it."""
+
+import subprocess
+import sys
+
+import pytest
+
+
+@pytest.mark.parametrize(
+    ("package", "missing", "arguments"),
+    [("train", "lightning", []), ("export", "onnx", ["absent.ckpt"])],
+)
+def test_a_missing_extra_is_named(package: str, missing: str, arguments: list[str]) -> None:
+    code = (
+        "import runpy, sys\n"
+        f"sys.modules[{missing!r}] = None\n"
+        f"sys.argv = [{package!r}, *{arguments!r}]\n"
+        f"runpy.run_module({package!r}, run_name='__main__')\n"
+    )
+    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True)
+    assert done.returncode == 2
+    assert f'pip install -e ".[{package}]"' in done.stderr and "Traceback" not in done.stderr
