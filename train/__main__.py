@@ -1,6 +1,10 @@
 """`python -m train`."""
 
+import os
 import sys
+
+# Read when torch starts its threads. Waiting threads that spin stop each other on a busy machine.
+os.environ.setdefault("OMP_WAIT_POLICY", "PASSIVE")
 
 
 def run() -> int:
