@@ -36,7 +36,9 @@ def read_checkpoint(path: str | Path) -> dict[str, Any]:
     try:
         checkpoint = torch.load(path, map_location="cpu", weights_only=True)
     except (RuntimeError, EOFError, pickle.UnpicklingError, OSError, ValueError) as error:
-        raise InputError(f"{path} is no complete checkpoint; train it again.") from error
+        raise InputError(
+            f"{path} is no whole checkpoint; give one that training wrote: RUN/best.ckpt."
+        ) from error
     note = checkpoint.get("skinnet") if isinstance(checkpoint, dict) else None
     if not isinstance(note, dict):
         raise InputError(f"{path} is not a checkpoint of skinnet; something else wrote it.")

@@ -116,7 +116,9 @@ def _predict_one(
         _say(f"{_name(source)}: no skin was found; {written}")
         return
     numbers = ", ".join(f"{name} {value:.3g}" for name, value in mean.items())
-    _say(f"{_name(source)}: {numbers} over {summary['skin_share']:.0%} of the box; {written}")
+    _say(
+        f"{_name(source)}: {numbers} over {summary['skin_share']:.0%} of the head's crop; {written}"
+    )
 
 
 def edit(options: argparse.Namespace) -> int:

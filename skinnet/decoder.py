@@ -7,6 +7,7 @@ from torch import Tensor, nn
 
 from skinnet.camera import SpectralCamera, apply_matrix
 from skinnet.capture import Capture
+from skinnet.errors import InputError
 from skinnet.fractions import check_fraction
 from skinnet.lookup import SkinLookup
 from skinnet.optics import SkinOptics
@@ -59,11 +60,16 @@ class SkinDecoder(nn.Module):
         """
         f_mel = check_fraction("f_mel", f_mel, like=self.camera.mean)
         f_blood = check_fraction("f_blood", f_blood, like=self.camera.mean)
+        if f_mel.ndim < 2 or f_mel.shape[-2:] != f_blood.shape[-2:]:
+            raise InputError(
+                f"f_mel and f_blood are maps [..., height, width] of one size; got shapes "
+                f"{tuple(f_mel.shape)} and {tuple(f_blood.shape)}. SkinReflectance takes any shape."
+            )
         capture = capture or self.camera.standard()
         batch = torch.broadcast_shapes(
             f_mel.shape[:-2], f_blood.shape[:-2], capture.temperature.shape
         )
-        size = torch.broadcast_shapes(f_mel.shape[-2:], f_blood.shape[-2:])
+        size = f_mel.shape[-2:]
         dtype = torch.promote_types(f_mel.dtype, self.camera.mean.dtype)
         f_mel, f_blood = (f.to(dtype).expand((*batch, *size)) for f in (f_mel, f_blood))
         capture = capture.expand(batch, self.camera.mean.dtype)

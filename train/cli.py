@@ -1,10 +1,11 @@
 """`python -m train fit | validate | test --config configs/NAME.yaml`."""
 
+import logging
 import sys
 import warnings
 from collections.abc import Sequence
 from pathlib import Path
-from typing import Any
+from typing import Any, NoReturn
 
 from lightning import LightningDataModule, Trainer
 from lightning.pytorch.callbacks import (
@@ -26,6 +27,13 @@ from train.synthetic import SyntheticFaces
 from train.task import SkinTask
 
 __all__ = ["Portraits", "SkinCLI", "SyntheticFaces", "main"]
+
+
+class SentenceParser(LightningArgumentParser):
+    """Says what is wrong in one sentence, without the usage of several hundred options."""
+
+    def error(self, message: str, ex: Exception | None = None) -> NoReturn:
+        raise InputError(" ".join(message.split())) from ex
 
 
 class SkinCLI(LightningCLI):
@@ -108,10 +116,15 @@ _NOISE = (
 """Warnings of Lightning's about what is meant to be so."""
 
 
+def _no_advert(record: logging.LogRecord) -> bool:
+    return "litlogger" not in record.getMessage()
+
+
 def main(arguments: Sequence[str] | None = None) -> int:
     """Run a training command; 0 on success, 2 with a sentence on stderr for bad input."""
     try:
         with warnings.catch_warnings():
+            logging.getLogger("lightning.pytorch.utilities.rank_zero").addFilter(_no_advert)
             for message in _NOISE:
                 warnings.filterwarnings("ignore", message)
             SkinCLI(
@@ -119,6 +132,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
                 LightningDataModule,
                 subclass_mode_data=True,
                 seed_everything_default=0,
+                parser_class=SentenceParser,
                 save_config_kwargs={"overwrite": True},
                 args=list(arguments) if arguments is not None else None,
                 parser_kwargs={"prog": "python -m train"},

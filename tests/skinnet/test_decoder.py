@@ -202,3 +202,11 @@ def test_one_capture_serves_a_batch_and_one_map_many_captures(
     assert torch.allclose(many, decoder(*stacked, capture=capture))
     first = Capture(*(value[0] for value in capture))
     assert torch.allclose(decoder(*stacked, capture=first)[1], many[0])
+
+
+@pytest.mark.parametrize("shapes", [((), ()), ((4,), (4,)), ((4, 5), (6, 5))])
+def test_what_is_no_map_is_refused_in_words(shapes: tuple[tuple[int, ...], ...]) -> None:
+    f_mel, f_blood = (torch.full(shape, 0.05) for shape in shapes)
+    decode = SkinDecoder().forward.__wrapped__  # the checks of shapes under pytest come first
+    with pytest.raises(ValueError, match="maps"):
+        decode(SkinDecoder(), f_mel, f_blood)
