@@ -145,6 +145,9 @@ def edit(options: argparse.Namespace) -> int:
 def _photographs(inputs: Sequence[str]) -> Iterator[str | InputError]:
     """Each photograph, a folder's in the order of their names, and an error for a bad folder."""
     for source in inputs:
+        if not source:
+            yield InputError("An empty name was given; name a photograph, a folder, or - .")
+            continue
         try:
             if source != STDIN and Path(source).is_dir():
                 yield from _inside(Path(source))

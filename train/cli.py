@@ -54,14 +54,14 @@ class SkinCLI(LightningCLI):
         check_checkpoint(self.config.subcommand, self.config[self.config.subcommand].ckpt_path)
 
     def before_instantiate_classes(self) -> None:
-        config = self.config[self.subcommand]
         # Loading goes through weights_only: a checkpoint is data, never a pickle.
-        config.weights_only = True
-        if self.subcommand == "fit" and config.ckpt_path is None:
-            keep_previous(Path(config.run))
+        self.config[self.subcommand].weights_only = True
 
     def instantiate_trainer(self, **kwargs: Any) -> Trainer:
-        run = self.config[self.subcommand].run
+        config = self.config[self.subcommand]
+        run = config.run
+        if self.subcommand == "fit" and config.ckpt_path is None:
+            keep_previous(Path(run))
         loggers = [TensorBoardLogger(run, name="", version=""), CurveLogger(run)]
         best = ModelCheckpoint(
             run,
@@ -72,7 +72,7 @@ class SkinCLI(LightningCLI):
         )
         callbacks = [best, LastCheckpoint(run), PictureGrid(run), LearningRateMonitor()]
         callbacks += kwargs.pop("callbacks", None) or []
-        if self.config[self.subcommand].trainer.enable_progress_bar is not False:
+        if config.trainer.enable_progress_bar is not False:
             callbacks.append(_bar())
         return super().instantiate_trainer(
             logger=loggers, callbacks=callbacks, default_root_dir=run, **kwargs

@@ -322,3 +322,8 @@ def test_a_closed_pipe_is_no_traceback(photo: Path, model_file: Path) -> None:
         process.stdout.close()
         assert process.stderr.read() == b""
     assert process.returncode == 1
+
+
+def test_an_empty_name_is_not_the_current_folder(capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(["predict", ""]) == 2
+    assert "empty name" in capsys.readouterr().err
