@@ -197,15 +197,15 @@ def _measure(target: Tensor, radii: tuple[float, ...]) -> Results:
 def colour_alone(target: Tensor) -> Results:
     """Recovery from linear sRGB under D65.
 
-    `rgb` is scored with a free scale: a photograph's colour gives the shape of a spectrum, and its
-    level only as far as the exposure is known. `rgb_own_scale` takes the scale from the colour too,
-    and `rgb_scale_near_one` weighs it against one.
+    `rgb` takes fractions and scale from the colour alone. `rgb_up_to_scale` is given the scale of
+    the measured spectrum, as for a photograph whose exposure is known; `rgb_scale_near_one` weighs
+    the scale against one.
     """
     rgb = target @ d65_matrix()
     free, stiff = from_rgb(rgb), from_rgb(rgb, STIFFNESS)
     return {
-        "rgb": _spread(rmse(up_to_scale(free, target), target)),
-        "rgb_own_scale": _spread(rmse(free, target)),
+        "rgb": _spread(rmse(free, target)),
+        "rgb_up_to_scale": _spread(rmse(up_to_scale(free, target), target)),
         "rgb_scale_near_one": _spread(rmse(stiff, target)),
     }
 

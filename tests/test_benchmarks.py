@@ -23,7 +23,7 @@ def test_spectra_report_every_preset_and_what_stands_beside_them(found: report.R
         *PRESETS,
         "split_half",
         "rgb",
-        "rgb_own_scale",
+        "rgb_up_to_scale",
         "rgb_scale_near_one",
         "pca",
     }
@@ -38,9 +38,9 @@ def test_spectra_reach_their_targets(found: report.Results) -> None:
     assert found["calibrated"]["median"] <= 0.0170
     assert found["paper"]["median"] <= 0.036
     assert found["authors"]["median"] > 0.05 and found["printed"]["median"] > 0.1
-    assert found["rgb"]["median"] <= 0.019 and found["rgb"]["p95"] <= 0.028
-    assert found["rgb_scale_near_one"]["median"] <= 0.019
-    assert found["rgb_own_scale"]["median"] <= 0.021
+    assert found["rgb"]["median"] <= 0.021 and found["rgb"]["p95"] <= 0.030
+    for name in ("rgb_up_to_scale", "rgb_scale_near_one"):
+        assert found[name]["median"] <= 0.019 and found[name]["p95"] <= 0.028
 
 
 def test_a_radius_chosen_on_others_is_as_good(found: report.Results) -> None:
