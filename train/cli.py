@@ -122,9 +122,9 @@ def _no_advert(record: logging.LogRecord) -> bool:
 
 def main(arguments: Sequence[str] | None = None) -> int:
     """Run a training command; 0 on success, 2 with a sentence on stderr for bad input."""
+    logging.getLogger("lightning.pytorch.utilities.rank_zero").addFilter(_no_advert)
     try:
         with warnings.catch_warnings():
-            logging.getLogger("lightning.pytorch.utilities.rank_zero").addFilter(_no_advert)
             for message in _NOISE:
                 warnings.filterwarnings("ignore", message)
             SkinCLI(

@@ -42,11 +42,12 @@ def paint_head(scene: dict[str, Tensor], rows: int, columns: int) -> tuple[Textu
     )
     paint = torch.zeros(len(melanin), 3, rows, columns, device=melanin.device)
     cover = torch.zeros(len(melanin), 1, rows, columns, device=melanin.device)
-    for colour, mask in _layers(scene, azimuth, elevation):
+    hair = _hair(scene, azimuth.abs(), elevation)
+    for colour, mask in _layers(scene, hair, azimuth, elevation):
         paint = paint * (1 - mask) + colour * mask
         cover = cover + mask - cover * mask
     bald = relief(scene["identity"], rows, columns)
-    radius = bald + column(scene["volume"]) * _hair(scene, azimuth.abs(), elevation)
+    radius = bald + column(scene["volume"]) * hair
     paint = paint / cover.clamp_min(1e-3)
     hollow = (gaussian_blur2d(bald, 21, (6.0, 6.0)) - bald).clamp_min(0)
     shade = torch.exp(-column(scene["occlusion"]) * hollow)
@@ -73,16 +74,16 @@ def _pigments(
 
 
 def _layers(
-    scene: dict[str, Tensor], azimuth: Tensor, elevation: Tensor
+    scene: dict[str, Tensor], hair: Tensor, azimuth: Tensor, elevation: Tensor
 ) -> list[tuple[Tensor, Tensor]]:
     side = azimuth.abs()
-    hair = scene["hair"][:, :, None, None]
+    colour = scene["hair"][:, :, None, None]
     shape = (elevation.shape[0], azimuth.shape[1])
     strands = F.interpolate(scene["strands"], shape, mode="bilinear").exp()
     layers = [
-        (hair * strands, mask)
+        (colour * strands, mask)
         for mask in (
-            _hair(scene, side, elevation),
+            hair,
             _beard(scene, side, elevation),
             _brow(scene, side, elevation),
         )
