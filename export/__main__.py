@@ -40,6 +40,8 @@ def _export(checkpoint: Path, output: Path) -> None:
 
     if output.suffix != ".onnx":
         raise InputError(f"{output} does not end in .onnx; name the file that is to be written.")
+    if output.is_dir():
+        raise InputError(f"{output} is a folder; name the file that is to be written.")
     if not output.parent.is_dir():
         raise InputError(f"{output.parent} is not a folder; make it first.")
     model, trained_on = _load(checkpoint)

@@ -7,6 +7,8 @@ import torch.nn.functional as F
 from jaxtyping import Float
 from torch import Tensor, nn
 
+from skinnet.errors import InputError
+
 WIDTHS = (16, 32, 64, 128, 160)
 
 
@@ -20,6 +22,10 @@ class SkinEncoder(nn.Module):
 
     def __init__(self, maps: int, globals: int, widths: tuple[int, ...] = WIDTHS):
         super().__init__()
+        if not widths:
+            raise InputError(
+                f"widths holds the channels of one level or more, as {WIDTHS}; got ()."
+            )
         self.stem = _stage(3, widths[0], stride=1)
         pairs = list(pairwise(widths))
         self.down = nn.ModuleList(_stage(fine, coarse, stride=2) for fine, coarse in pairs)

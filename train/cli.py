@@ -33,7 +33,8 @@ class SentenceParser(LightningArgumentParser):
     """Says what is wrong in one sentence, without the usage of several hundred options."""
 
     def error(self, message: str, ex: Exception | None = None) -> NoReturn:
-        raise InputError(" ".join(message.split())) from ex
+        said = " ".join(message.split())
+        raise InputError(f"{said} (python -m train fit --help lists what there is)") from ex
 
 
 class SkinCLI(LightningCLI):

@@ -109,10 +109,14 @@ def test_a_truncated_weights_file_is_refused(
     assert "complete" in capsys.readouterr().err
 
 
-@pytest.mark.parametrize(("output", "said"), [("skin.txt", ".onnx"), ("no/skin.onnx", "folder")])
+@pytest.mark.parametrize(
+    ("output", "said"),
+    [("skin.txt", ".onnx"), ("no/skin.onnx", "folder"), ("folder.onnx", "is a folder")],
+)
 def test_an_output_that_cannot_be_written_is_refused_first(
     output: str, said: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
+    (tmp_path / "folder.onnx").mkdir()
     assert main(["absent.ckpt", "-o", str(tmp_path / output)]) == 2
     assert said in capsys.readouterr().err
 

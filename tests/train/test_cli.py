@@ -145,6 +145,21 @@ def test_an_unknown_key_or_a_value_out_of_range_is_named(
     assert not (tmp_path / "run").exists()
 
 
+def test_a_network_without_levels_is_refused(
+    fit: Fit, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    assert fit(tmp_path / "run", "--model.widths=[]") == 2
+    assert "widths holds" in capsys.readouterr().err
+
+
+def test_an_empty_configuration_is_refused(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    (tmp_path / "empty.yaml").touch()
+    assert main(["fit", f"--config={tmp_path / 'empty.yaml'}"]) == 2
+    assert "--help" in capsys.readouterr().err
+
+
 def test_an_unknown_preset_is_named(
     fit: Fit, tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
