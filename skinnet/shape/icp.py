@@ -1,0 +1,169 @@
+"""Trimmed iterative closest points: one stage of a fit, on some of the vertices and modes."""
+
+from dataclasses import dataclass
+
+import numpy as np
+from jaxtyping import Bool, Float
+
+from skinnet.errors import InputError
+from skinnet.shape.model import ShapeModel
+from skinnet.shape.moments import gather
+from skinnet.shape.normals import smooth_normals
+from skinnet.shape.separable import Separable, Solution, solve
+from skinnet.shape.similarity import Similarity
+from skinnet.shape.surface import Nearest, Surface
+
+NEAR = 25.0
+"""A scan whose middle kept vertex lies farther than this from the model, in mm, is another object."""
+
+
+STILL = 0.01
+"""A change of the RMS distance in mm that no scanner sees."""
+
+
+@dataclass(frozen=True)
+class FitSettings:
+    """How a model is fitted to a scan (Alotaibi & Smith 2017, section 4.1).
+
+    Args:
+        kept: share of the model's vertices, those with the closest matches, that a step fits.
+        normals: measure across the scan's surface, and drop matches that face another way.
+        sliding: with `normals`, what a squared residual along the surface counts, in [0, 1].
+        angle: with `normals`, the largest angle in degrees between a vertex and its match.
+        map_weight: weight of the prior on the coefficients; 1 takes every matched point to be
+            accurate to 1 mm, 0 is the paper's fit without a prior.
+        stages: numbers of vertices and of modes, coarse to fine; 0 stands for all.
+        iterations: largest number of steps in each stage.
+        tolerance: a stage ends when the kept vertices' RMS distance changes, twice in a row, by less
+            than this share of it or by less than 0.01 mm.
+        seed: of the choice of vertices in the coarse stages.
+    """
+
+    kept: float = 0.8
+    normals: bool = True
+    sliding: float = 0.1
+    angle: float = 60.0
+    map_weight: float = 0.0
+    stages: tuple[tuple[int, int, float], ...] = (
+        (1000, 20, 30.0),
+        (2500, 60, 3.0),
+        (8000, 0, 0.3),
+        (0, 0, 0.0),
+    )
+    iterations: int = 30
+    tolerance: float = 1e-2
+    seed: int = 0
+
+    def __post_init__(self) -> None:
+        if not 0 < self.kept <= 1:
+            raise InputError(f"kept is a share of the vertices in (0, 1]; got {self.kept}.")
+        if not 0 <= self.sliding <= 1:
+            raise InputError(f"sliding is a weight in [0, 1]; got {self.sliding}.")
+        if self.map_weight < 0:
+            raise InputError(f"map_weight is 0 or more; got {self.map_weight}.")
+        if not self.stages:
+            raise InputError("stages is empty; give at least [[0, 0]], all vertices and modes.")
+
+
+@dataclass(frozen=True)
+class StageRecord:
+    """One stage of a fit: RMS distance in mm of the kept vertices before each step."""
+
+    vertices: int
+    modes: int
+    rms: tuple[float, ...]
+    converged: bool
+
+
+class Stage:
+    """Alternates nearest points and the separable fit on `vertices` and `modes` (0: all)."""
+
+    def __init__(
+        self,
+        model: ShapeModel,
+        surface: Surface,
+        settings: FitSettings,
+        alpha: Float[np.ndarray, "some"],
+        vertices: int,
+        modes: int,
+        prior: float = 0.0,
+    ):
+        self.surface, self.settings = surface, settings
+        self.millimetres = model.millimetres
+        self.prior = max(prior, settings.map_weight)
+        self.modes = min(modes or len(model.basis), len(model.basis))
+        count = len(model.mean)
+        draw = np.random.default_rng(settings.seed)
+        whole = vertices == 0 or vertices >= count
+        # A slice leaves the basis where it is; a list of rows would copy it.
+        chosen = slice(None) if whole else np.sort(draw.choice(count, vertices, replace=False))
+        self.basis = model.basis[: self.modes, chosen]
+        self.mean = model.mean[chosen].astype(np.float64)
+        self.variances = model.variances[: self.modes].astype(np.float64)
+        self.normals = smooth_normals(model.shape(alpha), model.triangles)[chosen]
+
+    def run(
+        self, pose: Similarity, alpha: Float[np.ndarray, "some"]
+    ) -> tuple[Similarity, Float[np.ndarray, "modes"], StageRecord]:
+        """Steps from a pose and coefficients until they move little, or run out."""
+        alpha = np.pad(alpha[: self.modes], (0, max(self.modes - len(alpha), 0)))
+        history: list[float] = []
+        while len(history) < self.settings.iterations and not self._still(history):
+            match, kept, rms = self.matches(pose(self.shape(alpha)), pose)
+            pose, alpha = self._fitted(match, kept, pose)[:2]
+            history.append(rms)
+        record = StageRecord(len(self.mean), self.modes, tuple(history), self._still(history))
+        return pose, alpha, record
+
+    def shape(self, alpha: Float[np.ndarray, "modes"]) -> Float[np.ndarray, "chosen 3"]:
+        """The stage's vertices in the model's frame."""
+        return self.mean + np.tensordot(alpha.astype(self.basis.dtype), self.basis, 1)
+
+    def matches(
+        self, moved: Float[np.ndarray, "chosen 3"], pose: Similarity
+    ) -> tuple[Nearest, Bool[np.ndarray, "chosen"], float]:
+        """Nearest points, which vertices are kept, and their RMS distance in mm."""
+        match = self.surface.nearest(moved)
+        far = np.where(match.boundary, np.inf, match.distance)
+        if self.settings.normals:
+            facing = np.einsum("vk,vk->v", self.normals @ pose.rotation.T, match.normal)
+            far[facing < np.cos(np.radians(self.settings.angle))] = np.inf
+        wanted = max(int(np.ceil(self.settings.kept * len(far))) - 1, 0)
+        kept = (far <= np.partition(far, wanted)[wanted]) & np.isfinite(far)
+        millimetres = self.millimetres / pose.scale
+        self._check(match.distance, kept, millimetres)
+        across = match.across(moved)[kept] * millimetres
+        return match, kept, float(np.sqrt(np.mean(across**2)))
+
+    def _fitted(
+        self, match: Nearest, kept: Bool[np.ndarray, "chosen"], pose: Similarity
+    ) -> Solution:
+        normals = match.normal @ pose.rotation if self.settings.normals else None
+        weights = kept.astype(np.float64)
+        sliding = self.settings.sliding
+        moments = gather(self.basis, self.mean, match.point, weights, normals, sliding)
+        prior = self.prior * (pose.scale / self.millimetres) ** 2
+        return solve(Separable(moments, self.variances, prior), pose)
+
+    def _still(self, history: list[float]) -> bool:
+        recent = np.array(history[-3:])
+        limit = np.maximum(self.settings.tolerance * recent[1:], STILL)
+        return len(recent) == 3 and bool(np.all(np.abs(np.diff(recent)) < limit))
+
+    def _check(
+        self,
+        distance: Float[np.ndarray, "chosen"],
+        kept: Bool[np.ndarray, "chosen"],
+        millimetres: float,
+    ) -> None:
+        middle = float(np.median(distance)) * millimetres
+        if middle > NEAR:
+            raise InputError(
+                f"nothing lies near the model: half of its vertices are more than {middle:.0f} mm "
+                "away from the scan; check that the landmarks belong to this scan."
+            )
+        if 3 * kept.sum() < self.modes + 6:
+            raise InputError(
+                f"only {kept.sum()} of {len(kept)} vertices of the model lie over the scan and face "
+                "as it does; check the landmarks, and that triangles run counter-clockwise."
+            )
