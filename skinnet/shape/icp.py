@@ -14,7 +14,7 @@ from skinnet.shape.similarity import Similarity
 from skinnet.shape.surface import Nearest, Surface
 
 NEAR = 25.0
-"""A scan whose middle kept vertex lies farther than this from the model, in mm, is another object."""
+"""A scan that half of the model's vertices miss by more than this, in mm, is another object."""
 
 
 STILL = 0.01
@@ -34,8 +34,8 @@ class FitSettings:
             accurate to 1 mm, 0 is the paper's fit without a prior.
         stages: numbers of vertices and of modes, coarse to fine; 0 stands for all.
         iterations: largest number of steps in each stage.
-        tolerance: a stage ends when the kept vertices' RMS distance changes, twice in a row, by less
-            than this share of it or by less than 0.01 mm.
+        tolerance: a stage ends when the kept vertices' RMS distance changes, twice in a row, by
+            less than this share of it or by less than 0.01 mm.
         seed: of the choice of vertices in the coarse stages.
     """
 
@@ -164,6 +164,6 @@ class Stage:
             )
         if 3 * kept.sum() < self.modes + 6:
             raise InputError(
-                f"only {kept.sum()} of {len(kept)} vertices of the model lie over the scan and face "
-                "as it does; check the landmarks, and that triangles run counter-clockwise."
+                f"only {kept.sum()} of {len(kept)} vertices of the model lie over the scan and "
+                "face as it does; check the landmarks, and that triangles run counter-clockwise."
             )

@@ -103,13 +103,12 @@ class Separable:
         modes = np.arange(len(self.variances))
         design[modes, modes] += self.weight / (scale**2 * self.variances)
         try:
-            solved: Float[np.ndarray, columns * right] = cho_solve(cho_factor(design), right)
+            return np.asarray(cho_solve(cho_factor(design), right))
         except np.linalg.LinAlgError as error:
             raise InputError(
                 f"{len(self.variances)} modes cannot be told apart by these correspondences; use "
                 "fewer modes or a MAP weight above 0."
             ) from error
-        return solved
 
 
 class Solution(NamedTuple):

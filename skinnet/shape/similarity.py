@@ -15,11 +15,11 @@ class Similarity(NamedTuple):
 
     def __call__(self, points: Float[np.ndarray, "*points 3"]) -> Float[np.ndarray, "*points 3"]:
         """Points of the source in the target's frame."""
-        return self.scale * points @ self.rotation.T + self.translation
+        return np.asarray(self.scale * points @ self.rotation.T + self.translation)
 
     def inverse(self, points: Float[np.ndarray, "*points 3"]) -> Float[np.ndarray, "*points 3"]:
         """Points of the target in the source's frame."""
-        return (points - self.translation) @ self.rotation / self.scale
+        return np.asarray((points - self.translation) @ self.rotation / self.scale)
 
 
 def similarity(

@@ -59,6 +59,7 @@ class Surface:
     def nearest(self, queries: Float[np.ndarray, "queries 3"]) -> Nearest:
         """By distance between points, on all processors."""
         distance, index = self.tree.query(queries, workers=-1)
+        distance = np.asarray(distance)
         return Nearest(distance, self.points[index], self.normals[index], self.boundary[index])
 
 
