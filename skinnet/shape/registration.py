@@ -14,6 +14,7 @@ from skinnet.shape.moments import gather
 from skinnet.shape.separable import Separable, solve
 from skinnet.shape.similarity import Similarity, similarity
 from skinnet.shape.surface import Surface
+from skinnet.shape.upright import upright_pose
 
 LANDMARK_NOISE = 2.0
 """Standard deviation in mm that landmarks are taken to have when they start a fit."""
@@ -55,19 +56,22 @@ Progress = Callable[[str], None]
 def register(
     model: ShapeModel,
     scan: Mesh,
-    landmarks: Mapping[str, Float[np.ndarray, "3"]],
+    landmarks: Mapping[str, Float[np.ndarray, "3"]] | None = None,
     settings: FitSettings | None = None,
     progress: Progress | None = None,
 ) -> Registration:
-    """Fit `model` to `scan`, begun from the landmarks that both have.
+    """Fit `model` to `scan`, begun from the landmarks that both have, or from `upright_pose`.
 
     Matches are the nearest points of the scan to the model's vertices; those on the scan's open
     edge are dropped, and of all vertices the share `kept` with the closest matches is fitted.
     `progress` is told of every stage. Raises `InputError` where the scan and the model do not meet.
     """
     settings = settings or FitSettings()
-    pose, alpha = from_landmarks(model, landmarks, settings.map_weight)
     surface = Surface(scan)
+    if landmarks is None:
+        pose, alpha = upright_pose(model, scan, surface), np.zeros(1)
+    else:
+        pose, alpha = from_landmarks(model, landmarks, settings.map_weight)
     records = []
     for vertices, modes, prior in settings.stages:
         stage = Stage(model, surface, settings, alpha, vertices, modes, prior)

@@ -1,0 +1,143 @@
+"""How long a texture space takes to make and to fill, and how exact it is.
+
+`python -m benchmarks.texture [--json]`. A face-like sheet of 53,490 vertices and 106,000 triangles
+with holes for eyes and mouth, its quads all split the same way, is embedded and a picture warped
+into it at 1024 x 1024. Beside it scikit-image's piecewise affine warp at a mesh small enough for
+it. Times are the least of several runs in one process.
+"""
+
+import time
+from collections.abc import Callable
+from typing import Any
+
+import numpy as np
+from jaxtyping import Float, Int
+from scipy.spatial import Delaunay
+from skimage.transform import PiecewiseAffineTransform, warp
+
+from benchmarks.report import Results, main
+from skinnet.shape.mirror import mirror_vertices
+from skinnet.shape.raster import rasterise
+from skinnet.shape.tutte import flipped, tutte
+from skinnet.shape.warp import TextureSpace, warp_texture
+
+VERTICES = 53_490
+SIZE = 1024
+RUNS = 5
+POINTS, SMALL = 100, 256
+"""Points and side of the picture for scikit-image, which takes 16 s for 400 at 1024 x 1024."""
+
+HOLES = ((-0.4, 0.25, 0.16, 0.06), (0.4, 0.25, 0.16, 0.06), (0.0, -0.45, 0.22, 0.04))
+"""Middle and half axes of eyes and mouth, in half widths and half heights of the sheet."""
+
+
+def sheet(
+    columns: int, rows: int
+) -> tuple[Float[np.ndarray, "vertices 3"], Int[np.ndarray, "triangles 3"]]:
+    """A bulging sheet with a nose and `HOLES`, mirror-symmetric but for the quads' diagonals."""
+    y, x = np.meshgrid(np.linspace(1, -1, rows), np.linspace(-1, 1, columns), indexing="ij")
+    z = np.sqrt(2.5 - x**2 - y**2) + 0.35 * np.exp(-(x**2) / 0.02 - y**2 / 0.06)
+    vertices = np.stack([80 * x, 110 * y, 90 * z], -1).reshape(-1, 3)
+    number = np.arange(rows * columns).reshape(rows, columns)
+    a, b, c, d = number[1:, :-1], number[1:, 1:], number[:-1, 1:], number[:-1, :-1]
+    quads = np.stack([a, b, c, d], -1).reshape(-1, 4)
+    middle = vertices[quads].mean(1) / [80, 110, 1]
+    for u, v, width, height in HOLES:
+        out = ((middle[:, 0] - u) / width) ** 2 + ((middle[:, 1] - v) / height) ** 2 > 1
+        quads, middle = quads[out], middle[out]
+    used = np.unique(quads)
+    quads = np.searchsorted(used, quads)
+    return vertices[used], np.concatenate([quads[:, :3], quads[:, [0, 2, 3]]])
+
+
+def scattered(
+    points: int, size: int, seed: int = 0
+) -> tuple[Float[np.ndarray, "points 2"], Float[np.ndarray, "points 2"]]:
+    """Places (x, y) in a map of that size, its corners among them, and in a source near them."""
+    generator = np.random.default_rng(seed)
+    inner = generator.uniform(0.05, 0.95, (points - 4, 2))
+    places = np.concatenate([[[0.02, 0.01], [0.98, 0.03], [0.99, 0.97], [0.01, 0.98]], inner])
+    moved = places + 0.03 * np.sin(5 * places[:, ::-1])
+    return places * (size - 1), moved.clip(0, 1) * (size - 1)
+
+
+def by_skimage(
+    places: Float[np.ndarray, "points 2"],
+    source: Float[np.ndarray, "points 2"],
+    picture: Float[np.ndarray, "size size 3"],
+) -> Float[np.ndarray, "size size 3"]:
+    """scikit-image's warp of a picture whose points at `source` are to come to `places`."""
+    transform = PiecewiseAffineTransform.from_estimate(places, source)
+    warped: Float[np.ndarray, "size size 3"] = warp(picture, transform, order=1, mode="edge")
+    return warped
+
+
+def by_ours(
+    places: Float[np.ndarray, "points 2"],
+    source: Float[np.ndarray, "points 2"],
+    picture: Float[np.ndarray, "size size 3"],
+) -> tuple[Float[np.ndarray, "size size 3"], Any]:
+    """The same with the same triangles and one sample a texel; the mask is True inside them."""
+    size = len(picture)
+    triangles = Delaunay(places).simplices.astype(np.int64)
+    flip = np.array([1, -1]), np.array([0.5, size - 0.5])
+    uv, coordinates = ((pixels * flip[0] + flip[1]) / size for pixels in (places, source))
+    space = TextureSpace(uv, triangles, size)
+    everywhere = np.ones(len(triangles), bool)
+    return warp_texture(space, coordinates[triangles], everywhere, picture, most_samples=1)
+
+
+def against_skimage(points: int, size: int) -> Results:
+    """Largest difference inside the mesh, and how many times longer scikit-image takes."""
+    places, source = scattered(points, size)
+    picture = np.random.default_rng(1).random((size, size, 3))
+    ours_s, (image, mask) = least(lambda: by_ours(places, source, picture))
+    theirs_s, theirs = least(lambda: by_skimage(places, source, picture), runs=2)
+    return {
+        "warp_vs_skimage_max_difference": float(np.abs(image - theirs)[mask].max()),
+        "warp_vs_skimage_speedup": theirs_s / ours_s,
+    }
+
+
+def least(action: Callable[[], Any], runs: int = RUNS) -> tuple[float, Any]:
+    """The least time of several runs in seconds, and the last result."""
+    times = []
+    for _ in range(runs):
+        start = time.perf_counter()
+        result = action()
+        times.append(time.perf_counter() - start)
+    return min(times), result
+
+
+def measure(
+    vertices: int = VERTICES, size: int = SIZE, points: int = POINTS, small: int = SMALL
+) -> Results:
+    """Every figure, by name."""
+    rows = int(np.ceil(np.sqrt(vertices * 1.02)))
+    surface, triangles = sheet(rows, rows)
+    mirror_s, mirror = least(lambda: mirror_vertices(surface))
+    tutte_s, uv = least(lambda: tutte(surface, triangles, mirror))
+    raster_s, _ = least(lambda: rasterise(uv[triangles], size))
+    source = 0.5 + surface[:, :2] / [170, 230]
+    picture = np.random.default_rng(0).random((size, size, 3), np.float32)
+    everywhere = np.ones(len(triangles), bool)
+
+    def filled() -> Any:
+        space = TextureSpace(uv, triangles, size)
+        return warp_texture(space, source[triangles], everywhere, picture)
+
+    return {
+        "vertices": len(surface),
+        "triangles": len(triangles),
+        "mirror_s": mirror_s,
+        "tutte_s": tutte_s,
+        "flipped": flipped(uv, triangles),
+        "asymmetry": float(np.abs(uv[mirror] - [1, 0] - uv * [-1, 1]).max()),
+        "raster_s": raster_s,
+        "warp_s": least(filled)[0],
+        **against_skimage(points, small),
+    }
+
+
+if __name__ == "__main__":
+    main(measure, "A texture space: embedding, raster and warp.")

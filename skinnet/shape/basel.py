@@ -1,0 +1,134 @@
+"""The Basel Face Models of 2009, 2017 and 2019.
+
+Their files may not be redistributed, so these loaders were written against the published layout and
+are tested on files of that layout, not on the models themselves.
+"""
+
+import json
+from dataclasses import replace
+from pathlib import Path
+from typing import Any
+
+import h5py
+import numpy as np
+from jaxtyping import Float, Int
+from scipy.io import loadmat
+from scipy.io.matlab import MatReadError
+from scipy.spatial import cKDTree
+
+from skinnet.errors import InputError
+from skinnet.pixels import BROKEN
+from skinnet.shape.model import ShapeModel, checked_model
+from skinnet.shape.orientation import inside_out
+
+_LANDMARKS = {
+    "right_brow_inner": "right.eyebrow.inner_lower",
+    "left_brow_inner": "left.eyebrow.inner_lower",
+    "nose_tip": "center.nose.tip",
+    "right_nostril": "right.nose.wing.tip",
+    "nose_base": "center.nose.attachement_to_philtrum",
+    "left_nostril": "left.nose.wing.tip",
+    "right_eye_outer": "right.eye.corner_outer",
+    "right_eye_inner": "right.eye.corner_inner",
+    "left_eye_inner": "left.eye.corner_inner",
+    "left_eye_outer": "left.eye.corner_outer",
+    "mouth_right": "right.lips.corner",
+    "mouth_top": "center.lips.upper.outer",
+    "mouth_left": "left.lips.corner",
+    "mouth_bottom": "center.lips.lower.outer",
+    "lips_upper": "center.lips.upper.inner",
+    "lips_lower": "center.lips.lower.inner",
+    "chin": "center.chin.tip",
+}
+
+
+def load_basel_2009(path: Path) -> ShapeModel:
+    """01_MorphableModel.mat (Paysan et al. 2009): micrometres, 53,490 vertices, 199 modes.
+
+    `shapeMU` [3N, 1], `shapePC` [3N, S] of unit columns, `shapeEV` [S, 1], which are standard
+    deviations, and `tl` [T, 3], counted from one. The file has no landmarks. Raises `InputError`
+    for another layout.
+    """
+    names = ("shapeMU", "shapePC", "shapeEV", "tl")
+    try:
+        arrays = loadmat(path, variable_names=names)
+        mean, modes, deviations, triangles = (np.asarray(arrays[name]) for name in names)
+    except (MatReadError, *BROKEN) as error:
+        raise InputError(
+            f"{path} is no Basel Face Model of 2009, whose .mat holds {', '.join(names)} "
+            f"({error!r}); give 01_MorphableModel.mat."
+        ) from error
+    variances = np.square(deviations.astype(np.float64).ravel())
+    return _model(path, mean, modes, variances, triangles.astype(np.int64) - 1, {}, 1e-3)
+
+
+def load_basel_2017(path: Path) -> ShapeModel:
+    """An .h5 of the models of 2017 or 2019 (Gerig et al. 2018), in millimetres: the neutral shape.
+
+    Statismo's layout: `shape/model/mean` [3N], `pcaBasis` [3N, S], `pcaVariance` [S] and
+    `shape/representer/cells` [3, T]; `metadata/landmarks/json` names points, of which 17 of the 20
+    landmarks of a fit (not the bridge of the nose and the outer ends of the brows) become the
+    nearest vertices of the mean. Raises `InputError` for another layout.
+    """
+    try:
+        with h5py.File(path, "r") as file:
+            mean, modes, variances = (
+                np.asarray(file[f"shape/model/{name}"])
+                for name in ("mean", "pcaBasis", "pcaVariance")
+            )
+            cells = np.asarray(file["shape/representer/cells"]).astype(np.int64)
+            marks = _marks(file)
+    except BROKEN as error:
+        raise InputError(
+            f"{path} is no Basel Face Model of 2017 or 2019, whose .h5 holds shape/model/mean, "
+            f"pcaBasis, pcaVariance and shape/representer/cells ({error!r})."
+        ) from error
+    triangles = cells.T if cells.shape[:1] == (3,) else cells
+    return _model(path, mean, modes, variances.astype(np.float64).ravel(), triangles, marks, 1.0)
+
+
+def _model(
+    path: Path,
+    mean: np.ndarray,
+    modes: np.ndarray,
+    variances: Float[np.ndarray, "modes"],
+    triangles: Int[np.ndarray, "..."],
+    marks: dict[str, list[float]],
+    millimetres: float,
+) -> ShapeModel:
+    if mean.size % 3 or modes.ndim != 2 or len(modes) != mean.size:
+        raise InputError(
+            f"{path} is no shape model that can be used: its mean has {mean.size:,} numbers and "
+            f"its basis is {list(modes.shape)}."
+        )
+    basis = np.ascontiguousarray(modes.T, np.float64)
+    # Statismo before 0.9 multiplied the columns by the standard deviations.
+    with np.errstate(invalid="ignore"):
+        basis /= np.maximum(np.linalg.norm(basis, axis=1, keepdims=True), 1e-300)
+    model = checked_model(
+        mean.astype(np.float64).reshape(-1, 3),
+        basis.reshape(len(basis), -1, 3),
+        variances,
+        np.ascontiguousarray(triangles),
+        millimetres=millimetres,
+        name=str(path),
+    )
+    return _completed(model, marks)
+
+
+def _completed(model: ShapeModel, marks: dict[str, list[float]]) -> ShapeModel:
+    """With landmarks, and triangles that look outside: those of 2009 look inside."""
+    near = cKDTree(model.mean)
+    landmarks = {
+        name: int(near.query(marks[mark])[1]) for name, mark in _LANDMARKS.items() if mark in marks
+    }
+    turn = [0, 2, 1] if inside_out(model.mean, model.triangles) else [0, 1, 2]
+    return replace(model, landmarks=landmarks, triangles=model.triangles[:, turn])
+
+
+def _marks(file: Any) -> dict[str, list[float]]:
+    if "metadata/landmarks/json" not in file:
+        return {}
+    stored = file["metadata/landmarks/json"][()]
+    text = stored if isinstance(stored, bytes | str) else np.asarray(stored).tobytes()
+    return {mark["id"]: mark["coordinates"] for mark in json.loads(text)}

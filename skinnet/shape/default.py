@@ -1,0 +1,181 @@
+"""The shape model that needs no file: the procedural face as a mesh with modes."""
+
+from functools import cache
+from typing import NamedTuple
+
+import numpy as np
+from jaxtyping import Bool, Float, Int
+
+from skinnet.errors import InputError
+from skinnet.shape.landmarks import IBUG
+from skinnet.shape.model import ShapeModel
+
+FACE = (1.25, 0.975, -0.175, 2.5)
+"""The face on the chart: half its width and height and its middle's elevation in radians, and the
+exponent of the superellipse. It ends before the ears, at the hairline and under the chin."""
+
+HEIGHT = 180.0
+"""Height of the mean face in millimetres."""
+
+DRAWS = 400
+"""Drawn faces from which the modes are found, in pairs of opposite numbers."""
+
+MODES = 43
+"""Modes that are kept, as many as a face is drawn with numbers; they hold 99.99 % of the variance.
+"""
+
+# Azimuth and elevation in radians where the relief of the mean head has the features.
+_PLACES = {
+    "left_brow_outer": (0.57, 0.15),
+    "left_brow_inner": (0.12, 0.17),
+    "nose_bridge": (0.0, 0.03),
+    "nose_tip": (0.0, -0.32),
+    "left_nostril": (0.14, -0.43),
+    "nose_base": (0.0, -0.48),
+    "left_eye_outer": (0.45, 0.01),
+    "left_eye_inner": (0.2, 0.0),
+    "mouth_left": (0.30, -0.66),
+    "mouth_top": (0.0, -0.55),
+    "mouth_bottom": (0.0, -0.775),
+    "lips_upper": (0.0, -0.635),
+    "lips_lower": (0.0, -0.685),
+    "chin": (0.0, -1.03),
+}
+
+
+@cache
+def default_model() -> ShapeModel:
+    """The procedural face (`skinnet.shape.procedural`) with some 6,000 vertices; made once."""
+    return procedural_model()
+
+
+def procedural_model(rows: int = 115, columns: int = 153) -> ShapeModel:
+    """The procedural face on a grid of `rows` x `columns` over its chart, about a third inside.
+
+    The modes are principal components of `DRAWS` faces with seeded standard normal numbers.
+    Vertices, triangles and modes are their own mirror images under x -> -x. The texture space is
+    the chart. Needs torch. Raises `InputError` for an even number of columns,
+    which has no column in the middle, or a grid too coarse for the features.
+    """
+    if columns % 2 == 0 or min(rows, columns) < 31:
+        raise InputError(
+            f"A procedural model has at least 31 rows and an odd number of columns from 31 on; got "
+            f"{rows} and {columns}."
+        )
+    azimuth, elevation = _axes(rows, columns)
+    number, triangles = _triangulated(_inside(azimuth, elevation))
+    row, column = np.nonzero(number >= 0)
+    relief = _relief(number)
+    flat = np.cos(elevation[row])
+    angle = azimuth[column]
+    direction = np.stack([flat * np.sin(angle), np.sin(elevation[row]), flat * np.cos(angle)], 1)
+    mean = relief.mean[:, None] * direction
+    scale = HEIGHT / np.ptp(mean[:, 1])
+    chart = np.stack([angle / azimuth[-1], elevation[row] / elevation[0]], 1)
+    return ShapeModel(
+        scale * mean,
+        relief.modes[:, :, None] * direction,
+        scale**2 * relief.variances,
+        triangles,
+        (chart + 1) / 2,
+        triangles,
+        _landmarks(number, azimuth, elevation),
+        name="the procedural face",
+    )
+
+
+def _axes(
+    rows: int, columns: int
+) -> tuple[Float[np.ndarray, "columns"], Float[np.ndarray, "rows"]]:
+    from skinnet.shape.procedural import chart
+
+    azimuth, elevation = (axis.double().numpy().ravel() for axis in chart(rows, columns))
+    return (azimuth - azimuth[::-1]) / 2, elevation
+
+
+def _inside(
+    azimuth: Float[np.ndarray, "columns"], elevation: Float[np.ndarray, "rows"]
+) -> Bool[np.ndarray, "rows columns"]:
+    width, height, middle, power = FACE
+    across, along = np.abs(azimuth / width), np.abs((elevation - middle) / height)
+    inside: Bool[np.ndarray, "rows columns"] = along[:, None] ** power + across**power <= 1
+    return inside
+
+
+def _triangulated(
+    inside: Bool[np.ndarray, "rows columns"],
+) -> tuple[Int[np.ndarray, "rows columns"], Int[np.ndarray, "triangles 3"]]:
+    """Numbers of the vertices on the grid, -1 outside, and two triangles for each square within."""
+    square = inside[:-1, :-1] & inside[1:, :-1] & inside[:-1, 1:] & inside[1:, 1:]
+    used = np.zeros_like(inside)
+    for down in (slice(None, -1), slice(1, None)):
+        for right in (slice(None, -1), slice(1, None)):
+            used[down, right] |= square
+    number = np.where(used, np.cumsum(used).reshape(used.shape) - 1, -1)
+    a, b, c, d = number[:-1, :-1], number[1:, :-1], number[1:, 1:], number[:-1, 1:]
+    left = np.arange(square.shape[1]) < square.shape[1] // 2
+    # Squares are cut along diagonals that mirror each other.
+    first = np.where(left[:, None], np.stack([a, b, d], -1), np.stack([a, b, c], -1))
+    second = np.where(left[:, None], np.stack([b, c, d], -1), np.stack([a, c, d], -1))
+    return number, np.concatenate([first[square], second[square]])
+
+
+class _Relief(NamedTuple):
+    """Mean radius of the vertices, orthonormal modes of it, and their variances."""
+
+    mean: Float[np.ndarray, "vertices"]
+    modes: Float[np.ndarray, "modes vertices"]
+    variances: Float[np.ndarray, "modes"]
+
+
+def _relief(number: Int[np.ndarray, "rows columns"]) -> _Relief:
+    """Principal components of the radius, which is all that differs between draws.
+
+    They are found on one half, whose vertices count twice but for the middle column's, and serve
+    both, so that these agree to the last bit.
+    """
+    middle = number.shape[1] // 2
+    half = number[:, middle:] >= 0
+    radius = _drawn(half)
+    mean = radius.mean(0)
+    twice = np.where(np.nonzero(half)[1] > 0, 2, 1)
+    values, vectors = np.linalg.eigh((radius - mean) * twice @ (radius - mean).T)
+    values, vectors = values[: -MODES - 1 : -1], vectors[:, : -MODES - 1 : -1]
+    modes = vectors.T @ (radius - mean) / np.sqrt(values)[:, None]
+    # The sign of an eigenvector is free: the largest number of a mode is positive.
+    peak = np.abs(modes).argmax(1)[:, None]
+    modes *= np.sign(np.take_along_axis(modes, peak, 1))
+    row, column = np.nonzero(number >= 0)
+    place = np.full(half.shape, -1)
+    place[half] = np.arange(len(mean))
+    both = place[row, np.abs(column - middle)]
+    return _Relief(mean[both], modes[:, both], values / (DRAWS - 1))
+
+
+def _drawn(half: Bool[np.ndarray, "rows half"]) -> Float[np.ndarray, "draws vertices"]:
+    """Radius of drawn faces at the places chosen from the chart's right half and middle column."""
+    import torch
+
+    from skinnet.shape.procedural import IDENTITY, relief
+
+    lot = torch.Generator().manual_seed(0)
+    numbers = torch.randn(DRAWS // 2, IDENTITY, generator=lot, dtype=torch.float64)
+    rows, middle = half.shape[0], half.shape[1] - 1
+    few = torch.cat([numbers, -numbers]).split(25)
+    heads = (relief(each, rows, 2 * middle + 1)[:, 0, :, middle:].numpy() for each in few)
+    return np.concatenate([head[:, half] for head in heads])
+
+
+def _landmarks(
+    number: Int[np.ndarray, "rows columns"],
+    azimuth: Float[np.ndarray, "columns"],
+    elevation: Float[np.ndarray, "rows"],
+) -> dict[str, int]:
+    """The vertices of the rows and columns nearest to `_PLACES`, and their mirror images."""
+    found: dict[str, int] = {}
+    for name, (across, along) in _PLACES.items():
+        row = int(np.abs(elevation - along).argmin())
+        column = int(np.abs(azimuth - across).argmin())
+        found[name] = int(number[row, column])
+        found[name.replace("left", "right")] = int(number[row, -1 - column])
+    return {name: found[name] for name in IBUG}

@@ -1,0 +1,119 @@
+"""ICT-FaceKit's shape model (Li et al. 2020, USC ICT, MIT licence): its folder, or an .npz of it.
+
+Modes are scaled by the standard deviation over people, so variances are one; a unit is a
+centimetre. The expression shapes in the folder are not read.
+"""
+
+import json
+from collections.abc import Mapping
+from dataclasses import replace
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from jaxtyping import Float
+
+from skinnet.errors import InputError
+from skinnet.shape.landmarks import ibug_name
+from skinnet.shape.meshfile import read_mesh
+from skinnet.shape.meshparts import obj_positions
+from skinnet.shape.model import ShapeModel, checked_model
+from skinnet.shape.seams import positions_in, share_coordinates
+
+NEUTRAL = "generic_neutral_mesh.obj"
+FACE = 9409
+"""The first vertices of the model are those of the face; head, eyes and teeth follow."""
+
+MILLIMETRES = 10.0
+
+
+def ict_from_arrays(path: Path, arrays: Mapping[str, Any], whole: bool = False) -> ShapeModel:
+    """The model of an .npz with `verts`, `id_modes`, `tris`, `tris_uv`, `uv` and `landmarks68`.
+
+    With `whole` the head with its eyes and teeth, otherwise the face. Raises `InputError` if the
+    arrays do not belong together.
+    """
+    modes = np.asarray(arrays["id_modes"], np.float64)
+    triangles = np.asarray(arrays["tris"], np.int64)
+    uv = np.asarray(arrays["uv"], np.float64)
+    uv_triangles = np.asarray(arrays["tris_uv"], np.int64)
+    model = checked_model(
+        np.asarray(arrays["verts"], np.float64),
+        modes,
+        np.ones(len(modes)),
+        triangles,
+        uv,
+        uv_triangles,
+        _named(arrays["landmarks68"]),
+        MILLIMETRES,
+        str(path),
+    )
+    # The arrays repeat coordinates that are the same.
+    uv, uv_triangles = share_coordinates(triangles, uv, uv_triangles)
+    model = replace(model, uv=uv, uv_triangles=uv_triangles)
+    count = int(arrays["face_vertex_count"])
+    return model if whole else _face(model, np.arange(len(model.mean)) < count)
+
+
+def load_ict_folder(folder: Path, whole: bool = False) -> ShapeModel:
+    """The model of a folder FaceXModel: `NEUTRAL`, identity000.obj and so on, vertex_indices.json.
+
+    With `whole` the head with its eyes and teeth, otherwise the face. Landmarks are those of
+    vertex_indices.json, whose numbering goes with the release of the meshes. Raises `InputError` if
+    there are no identities, or one has another number of vertices than the neutral mesh.
+    """
+    neutral = read_mesh(folder / NEUTRAL)
+    listed = obj_positions(folder / NEUTRAL)
+    files = sorted(folder.glob("identity[0-9][0-9][0-9].obj"))
+    if not files:
+        raise InputError(f"{folder} has {NEUTRAL}, but no identity000.obj; copy the whole folder.")
+    index = positions_in(listed, neutral.vertices)
+    basis = np.stack([_moved(file, listed)[index] for file in files]) - neutral.vertices
+    model = checked_model(
+        neutral.vertices,
+        basis,
+        np.ones(len(basis)),
+        neutral.triangles,
+        neutral.uv,
+        neutral.uv_triangles,
+        _listed_landmarks(folder / "vertex_indices.json", index),
+        MILLIMETRES,
+        str(folder),
+    )
+    return model if whole else _face(model, index < FACE)
+
+
+def _moved(file: Path, listed: Float[np.ndarray, "listed 3"]) -> Float[np.ndarray, "listed 3"]:
+    positions = obj_positions(file)
+    if positions.shape != listed.shape:
+        raise InputError(
+            f"{file} has {len(positions):,} vertices, and {NEUTRAL} has {len(listed):,}; "
+            "the files are of different releases or cut short."
+        )
+    return positions
+
+
+def _listed_landmarks(path: Path, index: np.ndarray) -> dict[str, int]:
+    if not path.is_file():
+        return {}
+    try:
+        listed = json.loads(path.read_text(encoding="utf-8"))["idx_to_landmark_verts"]
+        place = {int(vertex): number for number, vertex in enumerate(index)}
+        return _named([place[vertex] for vertex in listed])
+    except (ValueError, LookupError, TypeError) as error:
+        raise InputError(
+            f"{path} has no usable landmarks ({error!r}); copy it again, or remove it."
+        ) from error
+
+
+def _named(vertices: Any) -> dict[str, int]:
+    return {ibug_name(number): int(vertex) for number, vertex in enumerate(vertices)}
+
+
+def _face(model: ShapeModel, keep: np.ndarray) -> ShapeModel:
+    """The face; triangles of other parts on its vertices lie in other tiles of the texture."""
+    if model.uv is not None and model.uv_triangles is not None:
+        own = (model.uv[model.uv_triangles] <= 1).all((1, 2))
+        triangles, uv_triangles = model.triangles[own], model.uv_triangles[own]
+        model = replace(model, triangles=triangles, uv_triangles=uv_triangles)
+    return model.region(keep)

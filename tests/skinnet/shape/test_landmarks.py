@@ -1,0 +1,229 @@
+"""Landmarks are read from every format, and what cannot be fitted is refused in words."""
+
+import json
+from pathlib import Path
+
+import numpy as np
+import pytest
+from small_meshes import LANDMARKS, dome, small_model
+
+from skinnet.errors import InputError
+from skinnet.shape.landmarks import (
+    IBUG,
+    check_landmarks,
+    ibug_name,
+    read_landmark_vertices,
+    read_landmarks,
+    write_landmarks,
+)
+from skinnet.shape.mesh import Mesh
+from skinnet.shape.meshfile import read_mesh
+
+PP = """<!DOCTYPE PickedPoints>
+<PickedPoints>
+ <DocumentData><DateTime time="12:00:00" date="2020-01-01"/></DocumentData>
+ <point active="1" name="nose_tip" x="1" y="2" z="3.5"/>
+ <point active="0" name="chin" x="0" y="0" z="0"/>
+ <point name="36" x="-1" y="0" z="0"/>
+</PickedPoints>
+"""
+BOMB = '<!DOCTYPE x [<!ENTITY a "aaaa"><!ENTITY b "&a;&a;">]><x><point name="&b;"/></x>'
+
+
+def points() -> dict[str, np.ndarray]:
+    return {name: dome().vertices[vertex] for name, vertex in LANDMARKS.items()}
+
+
+def group(points: list, labels: dict[str, list[int]]) -> dict:
+    return {
+        "labels": [{"label": label, "mask": mask} for label, mask in labels.items()],
+        "landmarks": {"points": points},
+    }
+
+
+def written(path: Path, content: object) -> Path:
+    path.write_text(content if isinstance(content, str) else json.dumps(content))
+    return path
+
+
+def test_names_are_those_of_ibug() -> None:
+    assert len(IBUG) == 20
+    assert ibug_name(36) == "right_eye_outer" and ibug_name(0) == "ibug_0"
+    assert len({ibug_name(number) for number in range(68)}) == 68
+
+
+@pytest.mark.parametrize("suffix", [".csv", ".json"])
+def test_landmarks_come_back_as_they_were_written(tmp_path: Path, suffix: str) -> None:
+    write_landmarks(tmp_path / f"face{suffix}", points())
+    read = read_landmarks(tmp_path / f"face{suffix}")
+    assert list(read) == list(LANDMARKS)
+    assert all(np.allclose(read[name], point, rtol=1e-8) for name, point in points().items())
+    with pytest.raises(InputError, match=r"written as \.csv or \.json"):
+        write_landmarks(tmp_path / "face.txt", points())
+
+
+def test_names_may_be_numbers(tmp_path: Path) -> None:
+    path = written(tmp_path / "face.csv", "36,1,2,3\nibug_8, 0,0,0\nibug_1,0,0,1\nscar,1,1,1\n")
+    assert list(read_landmarks(path)) == ["right_eye_outer", "chin", "ibug_1", "scar"]
+    with pytest.raises(InputError, match=r"Landmark 68 is none of iBUG's"):
+        read_landmarks(written(tmp_path / "far.csv", "68,1,2,3\n"))
+
+
+def test_vertices_of_a_mesh_stand_for_points(tmp_path: Path) -> None:
+    path = written(tmp_path / "face.json", {"nose_tip": 31, "chin": [1, 2, 3]})
+    read = read_landmarks(path, dome())
+    assert np.array_equal(read["nose_tip"], dome().vertices[31])
+    assert read["chin"].tolist() == [1, 2, 3]
+    with pytest.raises(InputError, match="hand in the mesh"):
+        read_landmarks(path)
+
+
+@pytest.mark.parametrize("vertex", [63, -1])
+def test_vertices_out_of_range_are_refused(tmp_path: Path, vertex: int) -> None:
+    path = written(tmp_path / "face.json", {"nose_tip": vertex})
+    message = rf"face\.json: nose_tip is vertex {vertex}, and vertices go from 0 to 62"
+    with pytest.raises(InputError, match=message):
+        read_landmarks(path, dome())
+    with pytest.raises(InputError, match=message):
+        read_landmark_vertices(path, 63)
+
+
+def test_picked_points_of_meshlab_are_read(tmp_path: Path) -> None:
+    read = read_landmarks(written(tmp_path / "face.pp", PP))
+    assert list(read) == ["nose_tip", "right_eye_outer"]
+    assert read["nose_tip"].tolist() == [1, 2, 3.5]
+
+
+def test_entities_are_refused(tmp_path: Path) -> None:
+    with pytest.raises(InputError, match=r"bomb\.pp cannot be used: the file declares entities"):
+        read_landmarks(written(tmp_path / "bomb.pp", BOMB))
+
+
+def test_every_version_of_ljson_is_read(tmp_path: Path) -> None:
+    eye = [[float(i), 0, 1] for i in range(5)] + [[None, None, None]]
+    first = {
+        "version": 1,
+        "groups": [{"label": "leye", "landmarks": [{"point": point} for point in eye]}],
+    }
+    second = group(eye, {"leye": [0, 1, 2, 3, 4, 5]}) | {"version": 2}
+    third = {"version": 3, "groups": {"LJSON": group(eye, {"left_eye": [0, 1, 2, 3, 4, 5]})}}
+    for document in (first, second, third):
+        read = read_landmarks(written(tmp_path / "face.ljson", document))
+        assert list(read) == ["right_eye_outer", "ibug_37", "ibug_38", "right_eye_inner", "ibug_40"]
+        assert read["right_eye_inner"].tolist() == [3, 0, 1]
+
+
+def test_sixty_eight_points_under_other_labels_go_by_their_order(tmp_path: Path) -> None:
+    all_of_them = [[float(i), 0, 0] for i in range(68)]
+    document = group(all_of_them, {"all": list(range(68))}) | {"version": 2}
+    read = read_landmarks(written(tmp_path / "face.ljson", document))
+    assert read["chin"][0] == 8 and read["lips_lower"][0] == 66
+
+
+@pytest.mark.parametrize(
+    ("name", "content", "fault"),
+    [
+        ("a.csv", "nose_tip,1,2\n", "a.csv cannot be used: the line 'nose_tip,1,2'"),
+        ("a.csv", "nose_tip,1,2,x\n", "a.csv is damaged"),
+        ("a.json", "[1, 2]", "a.json cannot be used: it is no object"),
+        ("a.json", "{", "a.json is damaged"),
+        ("a.json", {"chin": [1, 2]}, "chin is .*and three coordinates are wanted"),
+        ("a.json", {"chin": "here"}, "chin is 'here'"),
+        ("a.json", {"chin": [1, 2, "x"]}, "which are no numbers"),
+        ("a.ljson", {"version": 3, "groups": {}}, "a.ljson is damaged"),
+        ("a.ljson", group([[0, 0, 0]], {"leye": [0]}) | {"version": 2}, "leye has 1 points"),
+        ("a.ljson", group([[0, 0, 0]], {"car": [0]}) | {"version": 2}, "not those of a face"),
+        ("a.pp", "<PickedPoints>", "a.pp is damaged"),
+        ("a.pts", "", "a.pts is no landmark file"),
+    ],
+)
+def test_damaged_files_are_refused(tmp_path: Path, name: str, content: object, fault: str) -> None:
+    with pytest.raises(InputError, match=fault):
+        read_landmarks(written(tmp_path / name, content))
+
+
+def test_a_missing_file_is_named(tmp_path: Path) -> None:
+    with pytest.raises(InputError, match=r"There is no landmark file .*none\.csv"):
+        read_landmarks(tmp_path / "none.csv")
+
+
+def test_sound_landmarks_are_those_in_common() -> None:
+    given = points() | {"scar": np.zeros(3)}
+    given.pop("chin")
+    assert check_landmarks(given, small_model(), dome()) == list(LANDMARKS)[:-1]
+
+
+def test_too_few_landmarks_are_refused_with_the_missing_ones() -> None:
+    few = {name: points()[name] for name in ("nose_tip", "chin", "mouth_left")}
+    message = r"face\.csv: 3 of the model's 6 .*missing are right_eye_outer, left_eye_outer, mouth_"
+    with pytest.raises(InputError, match=message):
+        check_landmarks(few, small_model(), name="face.csv")
+
+
+def test_a_model_without_landmarks_says_how_to_give_them() -> None:
+    bare = small_model().region(np.arange(63) < 14)
+    with pytest.raises(InputError, match=r"small has no landmarks; give a \.json file of names"):
+        check_landmarks(points(), bare)
+
+
+def test_landmarks_that_are_not_finite_are_refused() -> None:
+    with pytest.raises(InputError, match="The landmarks: chin are not finite"):
+        check_landmarks(points() | {"chin": np.array([0, np.nan, 0])}, small_model())
+
+
+def test_landmarks_far_from_the_mesh_are_refused() -> None:
+    for given, times in ((points() | {"chin": np.array([0, 900.0, 0])}, "4"), ({}, "9.6")):
+        other = given or {name: point / 10 - 1000 for name, point in points().items()}
+        with pytest.raises(InputError, match=rf"is {times}.* times the length of dome away"):
+            check_landmarks(other, small_model(), dome())
+
+
+def test_landmarks_in_one_place_are_refused() -> None:
+    with pytest.raises(InputError, match="lie on a line"):
+        check_landmarks({name: np.ones(3) for name in LANDMARKS}, small_model())
+
+
+def test_mirrored_landmarks_are_refused() -> None:
+    swapped = {name: points()[_other_side(name)] for name in LANDMARKS}
+    with pytest.raises(InputError, match="appear mirrored; swap left and right"):
+        check_landmarks(swapped, small_model(), dome())
+    lot = np.random.default_rng(0)
+    turn = np.linalg.qr(lot.normal(size=(3, 3)))[0]
+    turn *= np.linalg.det(turn)
+    turned = {name: 3 * turn @ point + 7 for name, point in points().items()}
+    assert check_landmarks(turned, small_model()) == list(LANDMARKS)
+
+
+def test_landmarks_in_a_plane_have_no_side() -> None:
+    flat = {name: point * [1, 1, 0] for name, point in points().items()}
+    assert check_landmarks(flat, small_model()) == list(LANDMARKS)
+
+
+def _other_side(name: str) -> str:
+    pair = name.replace("left", "L").replace("right", "left").replace("L", "right")
+    return pair if pair in LANDMARKS else name
+
+
+@pytest.fixture(scope="module")
+def james(shared_data: Path) -> Mesh:
+    return read_mesh(shared_data / "scans/james/james.obj")
+
+
+def test_the_landmarks_of_a_real_scan_lie_on_it(shared_data: Path, james: Mesh) -> None:
+    marks = read_landmarks(shared_data / "scans/james/james.ljson")
+    assert len(marks) == 68 and set(IBUG) <= marks.keys()
+    distances = [np.linalg.norm(james.vertices - point, axis=1).min() for point in marks.values()]
+    assert max(distances) < 5
+
+
+def test_left_is_left_and_up_is_up_on_a_real_scan(shared_data: Path) -> None:
+    marks = read_landmarks(shared_data / "scans/james/james.ljson")
+    x, y, z = ({name: marks[name][axis] for name in IBUG} for axis in range(3))
+    for name in ("eye_outer", "eye_inner", "brow_outer", "brow_inner", "nostril"):
+        assert x[f"right_{name}"] < x["nose_tip"] < x[f"left_{name}"]
+    assert x["right_eye_outer"] < x["right_eye_inner"] < x["left_eye_inner"] < x["left_eye_outer"]
+    assert x["right_brow_outer"] < x["right_brow_inner"] < x["left_brow_inner"]
+    assert x["mouth_right"] < x["lips_upper"] < x["mouth_left"]
+    down = ["nose_bridge", "nose_tip", "nose_base", "mouth_top", "lips_upper", "mouth_bottom"]
+    assert [y[name] for name in down] == sorted((y[name] for name in down), reverse=True)
+    assert y["chin"] < y["mouth_bottom"] and max(z, key=z.get) == "nose_tip"
