@@ -15,7 +15,7 @@ TILE = 300
 """Width and height of a picture in the panel, in pixels."""
 
 _GAP, _CAPTION, _SCALE = 18, 30, 46
-_INK, _PAPER, _BLANK = (38, 38, 40), (255, 255, 255), (232, 232, 234)
+_INK, _PAPER, BLANK = (38, 38, 40), (255, 255, 255), (232, 232, 234)
 
 _MELANIN = ((255, 243, 224), (233, 190, 140), (168, 104, 58), (92, 50, 28), (28, 16, 12))
 _HEMOGLOBIN = ((255, 255, 255), (255, 190, 180), (233, 80, 76), (160, 16, 34), (66, 2, 16))
@@ -58,7 +58,7 @@ def sheet(tiles: Sequence[Image.Image], columns: int) -> NDArray[np.uint8]:
     return np.array(paper)
 
 
-def colour_map(values: NDArray[np.float32], anchors: Anchors) -> NDArray[np.uint8]:
+def colour_map(values: NDArray[np.floating], anchors: Anchors) -> NDArray[np.uint8]:
     """uint8 sRGB [..., 3] of values in [0, 1] along evenly spaced anchor colours."""
     stops = np.linspace(0, 1, len(anchors))
     channels = [np.interp(values, stops, channel) for channel in zip(*anchors, strict=True)]
@@ -80,13 +80,37 @@ def _corner(column: int, row: int) -> tuple[int, int]:
 
 def pigment(decomposition: Decomposition, name: str) -> Image.Image:
     """A tile of `melanin` or `hemoglobin` on skin, with its scale."""
-    unit, anchors = _PIGMENTS[name]
     values = decomposition.maps()[name][decomposition.box.slices]
-    mask = decomposition.mask[decomposition.box.slices]
-    top = _top(values[mask > SKIN])
+    return pigment_map(name, values, decomposition.mask[decomposition.box.slices])
+
+
+def pigment_map(
+    name: str,
+    values: NDArray[np.floating],
+    mask: NDArray[np.floating],
+    top: float | None = None,
+    caption: str | None = None,
+) -> Image.Image:
+    """A tile of `melanin` or `hemoglobin` values [h, w], blank where `mask` is 0.
+
+    The scale ends at `top`, or at a round number above nearly all values.
+    """
+    return mapped(caption or name, values, mask, *_PIGMENTS[name], top)
+
+
+def mapped(
+    caption: str,
+    values: NDArray[np.floating],
+    mask: NDArray[np.floating],
+    unit: str,
+    anchors: Anchors,
+    top: float | None = None,
+) -> Image.Image:
+    """A tile of values [h, w] from 0 up along anchor colours, blank where `mask` is 0."""
+    top = _top(values[mask > SKIN]) if top is None else top
     weight = np.clip(mask, 0, 1)[..., None]
-    shown = weight * colour_map(values / top, anchors) + (1 - weight) * np.array(_BLANK)
-    return _tile(name, shown.astype(np.uint8), unit, anchors, top)
+    shown = weight * colour_map(values / top, anchors) + (1 - weight) * np.array(BLANK)
+    return _tile(caption, shown.astype(np.uint8), unit, anchors, top)
 
 
 def _plain_map(decomposition: Decomposition, name: str, unit: str, anchors: Anchors) -> Image.Image:
@@ -103,7 +127,7 @@ def _offset(decomposition: Decomposition) -> Image.Image:
     return _tile("offset", shown, note)
 
 
-def _top(values: NDArray[np.float32]) -> float:
+def _top(values: NDArray[np.floating]) -> float:
     return round_top(float(np.percentile(values, 99))) if values.size else 1.0
 
 
@@ -141,7 +165,7 @@ def _fitted(picture: NDArray[np.uint8]) -> Image.Image:
     height, width = picture.shape[:2]
     scale = TILE / max(height, width)
     size = max(1, round(width * scale)), max(1, round(height * scale))
-    square = Image.new("RGB", (TILE, TILE), _BLANK)
+    square = Image.new("RGB", (TILE, TILE), BLANK)
     corner = (TILE - size[0]) // 2, (TILE - size[1]) // 2
     square.paste(Image.fromarray(resize(picture, *size)), corner)
     return square

@@ -7,7 +7,7 @@ from pathlib import Path
 import pytest
 import torch
 
-from benchmarks import decoder, report, spectra
+from benchmarks import appearance, decoder, report, spectra
 from benchmarks.biofacenet import BioFaceNetShape
 from skinnet.optics import PRESETS
 from skinnet.reflectance import SkinReflectance
@@ -105,3 +105,13 @@ def test_the_rival_network_has_four_maps_and_its_globals() -> None:
     *maps, scene = BioFaceNetShape().eval()(torch.rand(1, 3, 32, 48))
     assert [tuple(value.shape) for value in maps] == [(1, 1, 32, 48)] * 4
     assert scene.shape == (1, 15)
+
+
+@pytest.mark.skipif(sys.platform != "linux", reason="Resident peaks are read from /proc.")
+def test_appearance_reports_its_figures() -> None:
+    found = appearance.measure_costs(count=4, size=24, many=6, small=16)
+    assert set(found) == {"pca_s", "fit_peak_gb", "peak_gb", "spool_s", "seconds", "many"}
+    steps = {"hybrid", "linear", "measure_hybrid", "measure_linear"}
+    assert set(found["seconds"]) == steps
+    assert found["many"]["people"] == 6 and set(found["many"]["seconds"]) == {"hybrid", "linear"}
+    assert 0 < found["fit_peak_gb"] <= found["peak_gb"] < 4

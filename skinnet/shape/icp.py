@@ -17,6 +17,9 @@ NEAR = 25.0
 """A scan that half of the model's vertices miss by more than this, in mm, is another object."""
 
 
+INDEPENDENT = 1000
+"""Matched points that err independently of each other; the others only repeat their neighbours."""
+
 STILL = 0.01
 """A change of the RMS distance in mm that no scanner sees."""
 
@@ -30,9 +33,10 @@ class FitSettings:
         normals: measure across the scan's surface, and drop matches that face another way.
         sliding: with `normals`, what a squared residual along the surface counts, in [0, 1].
         angle: with `normals`, the largest angle in degrees between a vertex and its match.
-        map_weight: weight of the prior on the coefficients; 1 takes every matched point to be
-            accurate to 1 mm, 0 is the paper's fit without a prior.
-        stages: numbers of vertices and of modes, coarse to fine; 0 stands for all.
+        map_weight: weight of the prior on the coefficients against a surface that tells as much as
+            1,000 points accurate to 1 mm, however many are matched; 0 is the paper's fit.
+        stages: numbers of vertices and of modes, coarse to fine, 0 for all, and the least prior
+            while the matches are still rough.
         iterations: largest number of steps in each stage.
         tolerance: a stage ends when the kept vertices' RMS distance changes, twice in a row, by
             less than this share of it or by less than 0.01 mm.
@@ -43,11 +47,11 @@ class FitSettings:
     normals: bool = True
     sliding: float = 0.1
     angle: float = 60.0
-    map_weight: float = 0.0
+    map_weight: float = 1.0
     stages: tuple[tuple[int, int, float], ...] = (
         (1000, 20, 30.0),
-        (2500, 60, 3.0),
-        (8000, 0, 0.3),
+        (2500, 60, 2.0),
+        (8000, 0, 0.1),
         (0, 0, 0.0),
     )
     iterations: int = 30
@@ -142,7 +146,7 @@ class Stage:
         weights = kept.astype(np.float64)
         sliding = self.settings.sliding
         moments = gather(self.basis, self.mean, match.point, weights, normals, sliding)
-        prior = self.prior * (pose.scale / self.millimetres) ** 2
+        prior = self.prior * (pose.scale / self.millimetres) ** 2 * kept.sum() / INDEPENDENT
         return solve(Separable(moments, self.variances, prior), pose)
 
     def _still(self, history: list[float]) -> bool:

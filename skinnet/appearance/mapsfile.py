@@ -1,0 +1,34 @@
+"""The file of one person's maps: NAME_maps.npz."""
+
+from pathlib import Path
+
+import numpy as np
+
+from skinnet.appearance import modelfile
+from skinnet.appearance.colour import SkinColour
+from skinnet.appearance.subjects import SkinTexture
+
+KIND = "SkinTexture"
+_ARRAYS = ("f_mel", "f_blood", "offset", "mask")
+
+
+def save_maps(path: Path, texture: SkinTexture, colour: SkinColour) -> None:
+    """Write maps and the colours under which they were found, whole or not at all."""
+    arrays = {name: getattr(texture, name) for name in _ARRAYS}
+    header = {"name": texture.name, "colour": colour.record()}
+    modelfile.write(path, KIND, header, arrays)
+
+
+def load_maps(path: Path) -> tuple[SkinTexture, SkinColour]:
+    """Read maps. Raises `InputError` for a file that is missing, damaged or something else."""
+    header, arrays = modelfile.read(path, KIND, _ARRAYS)
+    try:
+        colour = SkinColour.from_record(header["colour"])
+        maps = [np.asarray(arrays[name], np.float32) for name in _ARRAYS[:3]]
+        mask = arrays["mask"]
+        square = (len(mask), len(mask))
+        if [part.shape for part in (*maps, mask)] != [square, square, (*square, 3), square]:
+            raise ValueError("shapes")
+        return SkinTexture(*maps, mask.astype(bool), str(path)), colour
+    except modelfile.BROKEN as error:
+        raise modelfile.damaged(path) from error
