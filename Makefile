@@ -26,6 +26,10 @@ bench: $(READY)
 	$(BIN)/python -m benchmarks.spectra
 	$(BIN)/python -m benchmarks.decoder
 	$(BIN)/python -m benchmarks.latency
+	$(BIN)/python -m benchmarks.fit
+	$(BIN)/python -m benchmarks.texture
+	$(BIN)/python -m benchmarks.lookup
+	$(BIN)/python -m benchmarks.appearance
 
 wheel: $(READY)
 	$(BIN)/python -m build --wheel

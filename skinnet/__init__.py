@@ -6,6 +6,9 @@ from typing import TYPE_CHECKING, Any
 __version__ = "0.1.0"
 
 if TYPE_CHECKING:
+    from skinnet.appearance.hybrid import HybridModel
+    from skinnet.appearance.joint import JointModel
+    from skinnet.appearance.linear import LinearModel
     from skinnet.autoencoder import SkinAutoencoder
     from skinnet.camera import SpectralCamera
     from skinnet.capture import Capture
@@ -15,11 +18,16 @@ if TYPE_CHECKING:
     from skinnet.optics import SkinOptics
     from skinnet.reflectance import SkinReflectance
     from skinnet.runtime import Decomposer, Decomposition
+    from skinnet.shape.model import ShapeModel
 
 __all__ = [
     "Capture",
     "Decomposer",
     "Decomposition",
+    "HybridModel",
+    "JointModel",
+    "LinearModel",
+    "ShapeModel",
     "SkinAutoencoder",
     "SkinDecoder",
     "SkinEncoder",
@@ -33,6 +41,10 @@ _ROOMS = {
     "Capture": "capture",
     "Decomposer": "runtime",
     "Decomposition": "runtime",
+    "HybridModel": "appearance.hybrid",
+    "JointModel": "appearance.joint",
+    "LinearModel": "appearance.linear",
+    "ShapeModel": "shape.model",
     "SkinAutoencoder": "autoencoder",
     "SkinDecoder": "decoder",
     "SkinEncoder": "encoder",

@@ -15,6 +15,15 @@ from skinnet.errors import InputError
 if TYPE_CHECKING:
     from skinnet.runtime import Decomposer
 
+PIPELINE = {
+    "fit-shape": "fit a shape model to scans",
+    "maps": "scans to maps of melanin and hemoglobin: fit, warp, calibrate, invert",
+    "build-model": "maps of many people to a hybrid, a linear and a joint model",
+    "sample": "random faces from a model",
+    "edit-maps": "scale, add to or paint on maps, and render the face again",
+}
+"""Verbs of the classic pipeline, which take their settings from YAML (`skinnet.pipeline`)."""
+
 OK, UNREAD, BAD_INPUT, INTERRUPTED = 0, 1, 2, 130
 STDIN = "-"
 
@@ -28,8 +37,13 @@ def main(argv: Sequence[str] | None = None) -> int:
     verbs = parser.add_subparsers(title="verbs", required=True, metavar="VERB")
     for add in (_add_predict, _add_edit):
         add(verbs)
-    options = parser.parse_args(argv)
+    for verb, help_ in PIPELINE.items():
+        verbs.add_parser(verb, help=help_, add_help=False)
+    given = list(sys.argv[1:] if argv is None else argv)
     try:
+        if given and given[0] in PIPELINE:
+            return _pipeline(given[0], given[1:])
+        options = parser.parse_args(given)
         code: int = options.run(options)
     except BrokenPipeError:
         # Nobody reads on; Python would complain when it flushes at its end.
@@ -40,6 +54,19 @@ def main(argv: Sequence[str] | None = None) -> int:
     except KeyboardInterrupt:
         return INTERRUPTED
     return code
+
+
+def _pipeline(verb: str, arguments: list[str]) -> int:
+    try:
+        from skinnet.pipeline.command import run
+
+        return run(verb, arguments, PIPELINE[verb])
+    except ModuleNotFoundError as error:
+        if (error.name or "").partition(".")[0] == "skinnet":
+            raise
+        raise InputError(
+            f'skinnet {verb} needs the scans extra: pip install "skinnet[scans]"'
+        ) from error
 
 
 def _add_predict(verbs: "argparse._SubParsersAction[argparse.ArgumentParser]") -> None:

@@ -8,6 +8,7 @@ import torch.nn.functional as F
 from jaxtyping import Float
 from torch import Tensor, nn
 
+from skinnet.inversion import F_BLOOD_RANGE, F_MEL_RANGE, SkinInverse
 from skinnet.reflectance import SkinReflectance
 
 NODES = (96, 64)
@@ -87,6 +88,16 @@ class SkinLookup(nn.Module):
         """Bilinear interpolation of the tables at the fractions of each pixel."""
         grid = torch.stack([self._position(f_blood, 1), self._position(f_mel, 0)], -1)
         return F.grid_sample(colours, grid, align_corners=True, padding_mode="border")
+
+    def inverse(
+        self,
+        matrix: Float[Tensor, "wavelength 3"],
+        nodes: tuple[int, int] = (256, 256),
+        f_mel: tuple[float, float] = F_MEL_RANGE,
+        f_blood: tuple[float, float] = F_BLOOD_RANGE,
+    ) -> SkinInverse:
+        """From linear RGB under a light and a camera back to the fractions."""
+        return SkinInverse(self.reflectance, self.spacing, matrix, nodes, f_mel, f_blood)
 
     def _position(self, fraction: Float[Tensor, "*shape"], axis: int) -> Float[Tensor, "*shape"]:
         """Place of a fraction among the nodes as grid_sample counts it, -1 at the first."""

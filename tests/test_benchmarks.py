@@ -7,7 +7,7 @@ from pathlib import Path
 import pytest
 import torch
 
-from benchmarks import appearance, decoder, report, spectra
+from benchmarks import appearance, decoder, lookup, report, spectra
 from benchmarks.biofacenet import BioFaceNetShape
 from skinnet.optics import PRESETS
 from skinnet.reflectance import SkinReflectance
@@ -115,3 +115,21 @@ def test_appearance_reports_its_figures() -> None:
     assert set(found["seconds"]) == steps
     assert found["many"]["people"] == 6 and set(found["many"]["seconds"]) == {"hybrid", "linear"}
     assert 0 < found["fit_peak_gb"] <= found["peak_gb"] < 4
+
+
+def test_lookup_reports_its_figures() -> None:
+    found = lookup.measure(size=96, nodes=96, rounds=1)
+    pair = {"speedup_vs_kdtree", "speedup_with_building", "same_as_brute_force"}
+    pair |= {f"{name}seconds" for name in ("query_", "build_", "kdtree_", "kdtree_build_")}
+    own = {"seconds", "refined_seconds", "table_seconds", "on_manifold", "skin"}
+    own |= {f"round_trip_{name}" for name in ("median", "p99", "max")}
+    assert set(found) == pair | own and set(found["skin"]) == pair
+    assert found["same_as_brute_force"] and found["skin"]["same_as_brute_force"]
+    assert found["round_trip_median"] <= 1e-4 and found["round_trip_p99"] <= 1e-3
+
+
+def test_the_map_of_the_lookup_has_no_texel_twice() -> None:
+    skin, matrix = lookup.SkinLookup(SkinReflectance(dtype=torch.float64)), spectra.d65_matrix()
+    for rgb in lookup.face(skin, matrix, 128):
+        assert rgb.dtype == torch.float32 and rgb.shape == (128, 128, 3)
+        assert len(rgb.reshape(-1, 3).unique(dim=0)) == 128**2

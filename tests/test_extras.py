@@ -20,3 +20,16 @@ def test_a_missing_extra_is_named(package: str, missing: str, arguments: list[st
     done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True)
     assert done.returncode == 2
     assert f'pip install -e ".[{package}]"' in done.stderr and "Traceback" not in done.stderr
+
+
+@pytest.mark.parametrize("missing", ["jsonargparse", "trimesh", "embreex", "torch"])
+def test_a_verb_without_the_scans_extra_names_it(missing: str) -> None:
+    code = (
+        "import sys\n"
+        f"sys.modules[{missing!r}] = None\n"
+        "from skinnet.cli import main\n"
+        "sys.exit(main(['maps', 'absent.obj']))\n"
+    )
+    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True)
+    assert done.returncode == 2
+    assert 'pip install "skinnet[scans]"' in done.stderr and "Traceback" not in done.stderr

@@ -6,11 +6,19 @@ from pathlib import Path
 
 import pytest
 from PIL import Image
+from pipeline_scans import FAST, write_scan
 from skimage.data import astronaut
 
 from skinnet.cli import main
 
 README = Path(__file__).parents[1] / "README.md"
+SMALL = {
+    "fit-shape": FAST,
+    "maps": (*FAST, "--warp.size=48"),
+    "build-model": ("--model.samples=3",),
+    "edit-maps": ("--relight.size=64",),
+}
+"""Options that make the slower commands quick."""
 
 
 def blocks(language: str) -> list[str]:
@@ -20,6 +28,7 @@ def blocks(language: str) -> list[str]:
 @pytest.fixture(autouse=True)
 def photo(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.chdir(tmp_path)
+    Path("scans").mkdir()
     Image.fromarray(astronaut()).save("photo.jpg")
 
 
@@ -32,10 +41,14 @@ def test_python_runs(code: str) -> None:
 def test_commands_run() -> None:
     commands = [line for block in blocks("sh") for line in block.splitlines()]
     ours = [line for line in commands if line.startswith("skinnet ") and "--model" not in line]
-    assert len(ours) == 2
+    assert len(ours) == 7
+    for number in (1, 2, 3):
+        write_scan(Path(f"scans/{number}.obj"), number)
     for command in ours:
-        assert main(shlex.split(command, comments=True)[1:]) == 0
+        words = shlex.split(command, comments=True)[1:]
+        assert main([*words, *SMALL.get(words[0], ())]) == 0
     assert Path("skinmaps/photo_panel.png").is_file() and Path("photo_edited.png").is_file()
+    assert Path("scans/skinmaps/1_edited_panel.png").is_file()
 
 
 def test_paths_exist() -> None:

@@ -21,12 +21,13 @@ from lightning.pytorch.utilities.exceptions import MisconfigurationException
 from skinnet.checkpoint import read_checkpoint
 from skinnet.errors import InputError
 from train.callbacks import LastCheckpoint, PictureGrid
+from train.fitted import FittedFaces
 from train.logs import CurveLogger
 from train.portraits import Portraits
 from train.synthetic import SyntheticFaces
 from train.task import SkinTask
 
-__all__ = ["Portraits", "SkinCLI", "SyntheticFaces", "main"]
+__all__ = ["FittedFaces", "Portraits", "SkinCLI", "SyntheticFaces", "main"]
 
 
 class SentenceParser(LightningArgumentParser):

@@ -35,7 +35,7 @@ def render(scene: dict[str, Tensor], decoder: SkinDecoder) -> Batch:
     melanin, hemoglobin, paint, share, normal, oil, shade = _merge(
         scene, view, body, head, textures
     )
-    shading, specular = _shade(scene, normal, oil, shade)
+    shading, specular = shaded(scene, normal, oil, shade)
     other = paint * torch.where(view.inside > 0.5, shading, 1 - body.lit + body.lit * shading)
     other = (other + 0.5 * specular * view.inside) * column(scene["exposure"]).sqrt()
     truth = SkinMaps(
@@ -48,7 +48,7 @@ def render(scene: dict[str, Tensor], decoder: SkinDecoder) -> Batch:
     )
     capture = Capture(*(scene[name] for name in Capture._fields))
     linear = decoder.compose(*truth[:5], capture)
-    return Batch(_photograph(scene, linear), truth.mask, truth, capture)
+    return Batch(photographed(scene, linear), truth.mask, truth, capture)
 
 
 class _View(NamedTuple):
@@ -112,7 +112,7 @@ def _merge(
     )
 
 
-def _shade(
+def shaded(
     scene: dict[str, Tensor], normal: Tensor, oil: Tensor, shade: Tensor
 ) -> tuple[Tensor, Tensor]:
     """Diffuse shading under a first-order sky and three lamps, and Blinn-Phong highlights."""
@@ -130,7 +130,7 @@ def _shade(
     return diffuse * exposure, (specular * exposure).clamp_max(1)
 
 
-def _photograph(scene: dict[str, Tensor], linear: Tensor) -> Tensor:
+def photographed(scene: dict[str, Tensor], linear: Tensor) -> Tensor:
     sigma = (scene["blur"] * linear.shape[-1] / 128 + 0.05)[:, None].expand(-1, 2)
     display = srgb(gaussian_blur2d(linear, 5, sigma)) + scene["grain"]
     return (display.clamp(0, 1) * 255).round() / 255

@@ -25,6 +25,14 @@ def draw_scene(rng: np.random.Generator, size: int) -> Scene:
     return {name: np.asarray(value, np.float32) for name, value in scene.items()}
 
 
+def draw_conditions(rng: np.random.Generator, size: int) -> Scene:
+    """Light, gloss, camera and grain of a picture of a face that is drawn otherwise."""
+    skin = _skin(rng)
+    scene = {name: skin[name] for name in ("oil", "sharpness")} | _light(rng) | _capture(rng)
+    scene["grain"] = rng.normal(0, rng.uniform(0.0, 0.012), (3, size, size))
+    return {name: np.asarray(value, np.float32) for name, value in scene.items()}
+
+
 def _pose(rng: np.random.Generator) -> dict[str, object]:
     return {
         "identity": rng.normal(0, 1, IDENTITY).clip(-2.5, 2.5),

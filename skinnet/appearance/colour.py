@@ -29,6 +29,7 @@ class SkinColour(nn.Module):
     """
 
     table: Tensor
+    lookup: SkinLookup
 
     def __init__(
         self,

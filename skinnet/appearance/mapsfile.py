@@ -24,11 +24,12 @@ def load_maps(path: Path) -> tuple[SkinTexture, SkinColour]:
     header, arrays = modelfile.read(path, KIND, _ARRAYS)
     try:
         colour = SkinColour.from_record(header["colour"])
-        maps = [np.asarray(arrays[name], np.float32) for name in _ARRAYS[:3]]
+        f_mel, f_blood, offset = (np.asarray(arrays[name], np.float32) for name in _ARRAYS[:3])
         mask = arrays["mask"]
         square = (len(mask), len(mask))
-        if [part.shape for part in (*maps, mask)] != [square, square, (*square, 3), square]:
-            raise ValueError("shapes")
-        return SkinTexture(*maps, mask.astype(bool), str(path)), colour
+        shapes = [part.shape for part in (f_mel, f_blood, offset, mask)]
+        if shapes != [square, square, (*square, 3), square]:
+            raise modelfile.damaged(path)
+        return SkinTexture(f_mel, f_blood, offset, mask.astype(bool), str(path)), colour
     except modelfile.BROKEN as error:
         raise modelfile.damaged(path) from error

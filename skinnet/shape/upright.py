@@ -54,8 +54,8 @@ def _face(mesh: Mesh) -> tuple[Float[np.ndarray, "3"], float]:
     box = find_face(_plaster(buffers))
     if box is None:
         raise NoFaceError(
-            f"{mesh.name} shows no face from ahead; turn it upright with the face along +z, or give "
-            "landmarks."
+            f"{mesh.name} shows no face from ahead; turn it upright with the face along +z, or "
+            "give landmarks."
         )
     column, row = (box.left + box.right) / 2, (box.top + box.bottom) / 2
     width = box.width / scale

@@ -75,9 +75,9 @@ def test_a_bad_spectrum_is_named(tmp_path: Path, text: str, words: str) -> None:
 
 
 def test_an_unknown_name_lists_its_neighbours(tmp_path: Path) -> None:
-    with pytest.raises(InputError, match="no camera 'Nikon D201'.*Nikon D200"):
+    with pytest.raises(InputError, match=r"no camera 'Nikon D201'.*Nikon D200"):
         camera("Nikon D201")
-    with pytest.raises(InputError, match="no light 'LED-B9'.*LED-B"):
+    with pytest.raises(InputError, match=r"no light 'LED-B9'.*LED-B"):
         light("LED-B9")
     with pytest.raises(InputError, match="Daylight has 4000 to 25000 K"):
         light("D30")

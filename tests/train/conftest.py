@@ -3,8 +3,15 @@
 from collections.abc import Callable
 from pathlib import Path
 
+import numpy as np
 import pytest
+from pipeline_scans import SIZE, pigments
 
+from skinnet.appearance.colour import SkinColour
+from skinnet.appearance.mapsfile import save_maps
+from skinnet.appearance.subjects import SkinTexture
+from skinnet.shape.default import default_model
+from skinnet.shape.meshfile import write_mesh
 from train.cli import main
 
 Fit = Callable[..., int]
@@ -22,6 +29,19 @@ SMALL = (
     "--trainer.log_every_n_steps=1",
     "--model.warmup_steps=2",
 )
+
+
+@pytest.fixture(scope="session")
+def faces(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """A folder of one face with its maps, as `skinnet maps` leaves it."""
+    folder = tmp_path_factory.mktemp("faces")
+    model = default_model()
+    f_mel, f_blood = (one[0].numpy() for one in pigments(1, SIZE))
+    known = np.ones((SIZE, SIZE), bool)
+    texture = SkinTexture(f_mel, f_blood, np.zeros((SIZE, SIZE, 3), np.float32), known)
+    save_maps(folder / "a_maps.npz", texture, SkinColour())
+    write_mesh(folder / "a_face.obj", model.mesh(np.zeros(1)))
+    return folder
 
 
 @pytest.fixture

@@ -1,0 +1,167 @@
+"""How long the inverse of a table of skin takes on a whole map, and how exact it is.
+
+`python -m benchmarks.lookup [--json]`. A 1024 x 1024 float32 map is inverted with a table of
+256 x 256 nodes: the face of a synthetic head, with brows, eyes, nostrils, mouth and some of its
+hair, a uniform cast as of a residual shading, and noise, so that no two texels are the same. The
+nearest node is that of scipy's cKDTree on the same colours, with two workers; the two take turns in
+one process and the least time of each counts. `skin` is the same with the skin alone, which lies
+on the table's surface but for the noise and is what suits a tree best.
+"""
+
+import time
+from collections.abc import Callable
+
+import numpy as np
+import torch
+from jaxtyping import Float, Int
+from scipy.spatial import cKDTree
+from torch import Tensor
+
+from benchmarks.report import Results, main
+from skinnet.inversion import F_BLOOD_RANGE, F_MEL_RANGE, SkinInverse
+from skinnet.lightstage import spectrum_matrix
+from skinnet.lookup import SkinLookup
+from skinnet.nearest import NearestNode
+from skinnet.reflectance import SkinReflectance
+from train.scene import draw_scene
+from train.texture import paint_head
+
+SIZE, NODES, ROUNDS, REPEATS = 1024, 256, 2, 3
+WORKERS = 2
+SEED = 3
+FACE = (slice(0.15, 0.85), slice(0.2, 0.8))
+"""Rows and columns of the head's chart that show the face, as shares of the whole."""
+
+CAST = (0.004, -0.002, 0.003)
+NOISE = 0.003
+"""Linear RGB added to the map, and the standard deviation of the noise in white."""
+
+SAMPLE = 2000
+"""Texels that are compared with every node; the others are compared with the tree's answer."""
+
+
+@torch.no_grad()
+def face(lookup: SkinLookup, matrix: Tensor, size: int) -> tuple[Tensor, Tensor]:
+    """Linear RGB [size, size, 3] of a face, and of the skin under its hair, brows and eyes."""
+    rng = np.random.default_rng(SEED)
+    scene = {name: torch.from_numpy(value)[None] for name, value in draw_scene(rng, 8).items()}
+    rows, columns = (round(size / (part.stop - part.start)) for part in FACE)
+    textures, _ = paint_head(scene, rows, columns)
+    inside = [
+        slice(round(p.start * n), round(p.start * n) + size)
+        for p, n in zip(FACE, (rows, columns), strict=True)
+    ]
+    maps = [value[0].double()[:, *inside].movedim(0, -1) for value in textures[:4]]
+    f_mel, f_blood, paint, cover = maps
+    skin = torch.cat(
+        [
+            lookup.reflectance.bands(mel[..., 0], blood[..., 0]) @ matrix
+            for mel, blood in zip(f_mel.split(32), f_blood.split(32), strict=True)
+        ]
+    )
+    both = skin * (1 - cover) + paint * cover + torch.tensor(CAST)
+    noise = NOISE * torch.from_numpy(rng.normal(0, 1, both.shape))
+    # As a camera's, it grows with the root of the light.
+    noisy = [one + noise * (0.2 + one.clamp_min(0).sqrt()) for one in (both, skin)]
+    return noisy[0].float(), noisy[1].float()
+
+
+def least(function: Callable[[], object], repeats: int) -> float:
+    """The least time of several calls, in seconds."""
+    times = []
+    for _ in range(repeats):
+        start = time.perf_counter()
+        function()
+        times.append(time.perf_counter() - start)
+    return min(times)
+
+
+def beside_a_tree(
+    table: Float[np.ndarray, "mel blood 3"], colours: Float[np.ndarray, "n 3"], rounds: int
+) -> Results:
+    """Times of building and asking both, and whether they and brute force agree."""
+    nodes = table.reshape(-1, 3)
+    ours, tree = NearestNode(table), cKDTree(nodes)
+    times: dict[str, list[float]] = {name: [] for name in ("build", "tree_build", "query", "tree")}
+    for _ in range(rounds):
+        times["build"].append(least(lambda: NearestNode(table), 1))
+        times["tree_build"].append(least(lambda: cKDTree(nodes), 1))
+        times["query"].append(least(lambda: ours(colours), REPEATS))
+        times["tree"].append(least(lambda: tree.query(colours, workers=WORKERS), 1))
+    seconds = {name: min(values) for name, values in times.items()}
+    found = ours(colours)
+    return {
+        "speedup_vs_kdtree": seconds["tree"] / seconds["query"],
+        "speedup_with_building": (seconds["tree"] + seconds["tree_build"])
+        / (seconds["query"] + seconds["build"]),
+        "same_as_brute_force": same(nodes, colours, found, tree),
+        "query_seconds": seconds["query"],
+        "build_seconds": seconds["build"],
+        "kdtree_seconds": seconds["tree"],
+        "kdtree_build_seconds": seconds["tree_build"],
+    }
+
+
+def same(
+    nodes: Float[np.ndarray, "nodes 3"],
+    colours: Float[np.ndarray, "n 3"],
+    found: Int[np.ndarray, "n"],
+    tree: cKDTree,
+) -> bool:
+    """The tree's node for every colour, or another as near, and every node's for a sample."""
+    distance = np.linalg.norm(colours - nodes[found], axis=1)
+    nearest, index = tree.query(colours, workers=WORKERS)
+    sample = np.random.default_rng(0).choice(len(colours), min(SAMPLE, len(colours)), replace=False)
+    brute = np.concatenate(
+        [
+            ((some[:, None] - nodes) ** 2).sum(-1).argmin(1)
+            for some in np.array_split(colours[sample].astype(np.float64), len(sample) // 20 + 1)
+        ]
+    )
+    by_tree = (index == found) | (distance <= nearest * (1 + 1e-12))
+    by_all = (brute == found[sample]) | (
+        distance[sample] <= np.linalg.norm(colours[sample] - nodes[brute], axis=1) * (1 + 1e-12)
+    )
+    return bool(by_tree.all() and by_all.all())
+
+
+def round_trip(lookup: SkinLookup, matrix: Tensor, inverse: SkinInverse, count: int) -> Results:
+    """Errors of fractions drawn evenly from the table's range, from float32 colours."""
+    unit = torch.rand(2, count, generator=torch.Generator().manual_seed(0), dtype=torch.float64)
+    true = torch.stack([F_MEL_RANGE[1] * unit[0], F_BLOOD_RANGE[1] * unit[1]])
+    parts = [lookup.reflectance.bands(*some) @ matrix for some in true.split(2**15, 1)]
+    found = inverse(torch.cat(parts).float())
+    error = (torch.stack([found.f_mel, found.f_blood]) - true).abs().amax(0).numpy()
+    return {
+        "round_trip_median": float(np.median(error)),
+        "round_trip_p99": float(np.percentile(error, 99)),
+        "round_trip_max": float(error.max()),
+    }
+
+
+def measure(size: int = SIZE, nodes: int = NODES, rounds: int = ROUNDS) -> Results:
+    """Every figure, by name."""
+    lookup, matrix = (
+        SkinLookup(SkinReflectance(dtype=torch.float64)),
+        spectrum_matrix("D65", "mean"),
+    )
+    both, skin = face(lookup, matrix, size)
+    inverse = lookup.inverse(matrix, (nodes, nodes))
+    table = inverse.colours.numpy()
+    figures, on_skin = (
+        beside_a_tree(table, rgb.reshape(-1, 3).numpy(), rounds) for rgb in (both, skin)
+    )
+    on = inverse(both).on_manifold
+    return {
+        **figures,
+        "seconds": least(lambda: inverse(both, refine=False), REPEATS),
+        "refined_seconds": least(lambda: inverse(both), REPEATS),
+        "table_seconds": least(lambda: lookup.inverse(matrix, (nodes, nodes)), 1),
+        **round_trip(lookup, matrix, inverse, min(size**2, 2**18)),
+        "on_manifold": float(on.float().mean()),
+        "skin": on_skin,
+    }
+
+
+if __name__ == "__main__":
+    main(measure, "The inverse of a table of skin beside a tree of its colours.")

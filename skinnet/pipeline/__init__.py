@@ -1,0 +1,1 @@
+"""The classic pipeline as commands: from scans to maps, models, samples and edits."""

@@ -1,0 +1,78 @@
+"""How a face is lit and seen when a command renders it."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from jaxtyping import Float32, UInt8
+
+from skinnet.errors import InputError
+from skinnet.render.camera import front
+from skinnet.render.lights import Directional, Light, SphericalHarmonics
+from skinnet.render.shade import SKIN_SPECULAR, render
+from skinnet.shape.mesh import Mesh
+
+Direction = tuple[float, float, float]
+
+
+@dataclass(frozen=True)
+class RelightSettings:
+    """Lights and camera.
+
+    Args:
+        lamps: of each distant lamp the direction to it (x to the face's left, y up, z forward).
+        strengths: of each lamp the radiance of a white surface that faces it.
+        width: angle in degrees that the lamps are across; 0 gives hard shadows.
+        above: radiance of the sky straight above.
+        below: radiance from straight below.
+        harmonics: nine spherical-harmonic coefficients of grey light in place of the sky.
+        shadows: whether the face casts shadows on itself.
+        gloss: whether it has highlights.
+        turn: angle in degrees by which the camera goes around to the face's left.
+        tilt: angle in degrees by which it goes up.
+        size: pixels along a side of the picture.
+    """
+
+    lamps: tuple[Direction, ...] = ((-0.45, 0.55, 0.75),)
+    strengths: tuple[float, ...] = (0.75,)
+    width: float = 6.0
+    above: float = 0.55
+    below: float = 0.2
+    harmonics: tuple[float, ...] | None = None
+    shadows: bool = True
+    gloss: bool = True
+    turn: float = 0.0
+    tilt: float = 0.0
+    size: int = 600
+
+    def __post_init__(self) -> None:
+        if len(self.lamps) != len(self.strengths):
+            raise InputError(
+                f"There are {len(self.lamps)} lamps and {len(self.strengths)} strengths; give one "
+                "strength for each lamp."
+            )
+        if self.harmonics is not None and len(self.harmonics) != 9:
+            raise InputError(
+                f"harmonics are nine coefficients, degrees 0 to 2; got {len(self.harmonics)}."
+            )
+        if not 16 <= self.size <= 8192:
+            raise InputError(f"size is a number of pixels from 16 to 8192; got {self.size}.")
+
+    def lights(self) -> Sequence[Light]:
+        """The lamps and the sky."""
+        lamps = [
+            Directional(direction, strength, self.width)
+            for direction, strength in zip(self.lamps, self.strengths, strict=True)
+        ]
+        if self.harmonics is not None:
+            return [*lamps, SphericalHarmonics(np.array(self.harmonics))]
+        return [*lamps, SphericalHarmonics.sky((self.above,) * 3, (self.below,) * 3)]
+
+    def picture(
+        self, mesh: Mesh, albedo: Float32[np.ndarray, "size size 3"]
+    ) -> UInt8[np.ndarray, "h w 3"]:
+        """A face with a linear albedo texture, uint8 sRGB."""
+        view = front(mesh.vertices, (self.size, self.size), self.turn, self.tilt)
+        gloss = SKIN_SPECULAR if self.gloss else 0.0
+        grey = (0.75, 0.75, 0.75)
+        return render(mesh, albedo, self.lights(), view, 2, self.shadows, gloss, background=grey)

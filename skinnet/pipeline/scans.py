@@ -1,0 +1,136 @@
+"""A scan with what belongs to it: texture, landmarks, and the repairs that it needed."""
+
+from collections.abc import Callable
+from dataclasses import dataclass, fields
+from pathlib import Path
+
+import numpy as np
+from jaxtyping import Float
+from jsonargparse import ArgumentParser, Namespace
+
+from skinnet.errors import InputError
+from skinnet.pipeline.command import add_output
+from skinnet.pipeline.progress import say
+from skinnet.shape.landmarks import check_landmarks, read_landmarks
+from skinnet.shape.mesh import Mesh
+from skinnet.shape.meshfile import read_mesh
+from skinnet.shape.model import ShapeModel
+from skinnet.shape.modelfile import load_shape_model
+from skinnet.shape.repair import check_mesh
+
+BESIDE = (".ljson", ".pp", "_landmarks.csv", "_landmarks.json")
+"""Ends of the names under which landmarks are looked for beside NAME.obj."""
+
+OUTPUT = "skinmaps"
+"""Folder beside a scan for what is made of it."""
+
+
+@dataclass(frozen=True)
+class ScanOptions:
+    """What is read and where it goes.
+
+    Args:
+        model: shape model: ICT-FaceKit (folder or .npz), Basel Face Model (.mat, .h5), .npz of
+            our own, a folder of registered meshes; by default the embedded procedural face.
+        model_landmarks: .json of names and vertex numbers, for a model without landmarks.
+        landmarks: points of the scan (.ljson, .csv, .json, .pp); by default NAME.ljson, NAME.pp,
+            NAME_landmarks.csv or .json beside it, and without any the face is found from ahead.
+        texture: the scan's picture, if the mesh does not name it.
+    """
+
+    model: Path | None = None
+    model_landmarks: Path | None = None
+    landmarks: Path | None = None
+    texture: Path | None = None
+
+    def load_model(self) -> ShapeModel:
+        """The shape model."""
+        return load_shape_model(self.model, self.model_landmarks)
+
+
+@dataclass(frozen=True)
+class Scan:
+    """A mesh fit to be worked on, its named points if known, and sentences on what was mended."""
+
+    path: Path
+    mesh: Mesh
+    landmarks: dict[str, Float[np.ndarray, "3"]] | None
+    notes: tuple[str, ...]
+
+
+def load_scan(path: Path, model: ShapeModel, options: ScanOptions, textured: bool = False) -> Scan:
+    """Read, check and mend a scan; landmarks are those given, or those beside it, or none.
+
+    Raises `InputError` with the file and the fault for whatever cannot be mended.
+    """
+    mesh = read_mesh(path, options.texture)
+    marks = options.landmarks or next((file for file in beside(path) if file.is_file()), None)
+    points = None if marks is None else read_landmarks(marks, mesh)
+    checked = check_mesh(mesh, textured)
+    notes = list(checked.notes)
+    if points is None:
+        notes.append(f"{path} has no landmarks; its face is looked for from ahead.")
+    else:
+        check_landmarks(points, model, checked.mesh, str(marks))
+    for note in notes:
+        say(note)
+    return Scan(path, checked.mesh, points, tuple(notes))
+
+
+def each_scan(
+    paths: list[Path], options: ScanOptions, output: Path | None, action: Callable[[Path], object]
+) -> int:
+    """Do something with every scan, report the bad ones and go on; 2 if any was bad, else 0.
+
+    Raises `InputError` where one file of landmarks or one texture is given for several scans, or
+    two scans would write the same files.
+    """
+    for name, one in (("landmarks", options.landmarks), ("texture", options.texture)):
+        if one is not None and len(paths) > 1:
+            raise InputError(
+                f"{one} is one file of {name} for {len(paths)} scans; put each scan's own beside "
+                "it."
+            )
+    names = [(output or path.parent, path.stem) for path in paths]
+    twice = [path for path, name in zip(paths, names, strict=True) if names.count(name) > 1]
+    if twice:
+        raise InputError(
+            f"{twice[0]} and {twice[1]} would write the same files; rename one, or run them apart."
+        )
+    code = 0
+    for path in paths:
+        try:
+            action(path)
+        except InputError as error:
+            say(f"skinnet: {error}")
+            code = 2
+    return code
+
+
+def beside(path: Path) -> list[Path]:
+    """Where the landmarks of a scan may lie."""
+    return [path.with_name(path.stem + end) for end in BESIDE]
+
+
+def place(scan: Path, output: Path | None) -> Path:
+    """Where the files of a scan go, without their ends: FOLDER/NAME."""
+    folder = output or scan.parent / OUTPUT
+    try:
+        folder.mkdir(parents=True, exist_ok=True)
+    except OSError as error:
+        raise InputError(
+            f"{folder} cannot be made ({error.strerror}); choose another folder with -o."
+        ) from error
+    return folder / scan.stem
+
+
+def add_scan_arguments(parser: ArgumentParser) -> None:
+    """The scans, what belongs to them, and where their files go."""
+    parser.add_argument("scan", nargs="+", type=Path, help="Meshes: OBJ, PLY, glTF, GLB or STL.")
+    parser.add_class_arguments(ScanOptions)
+    add_output(parser, "skinmaps beside the scan")
+
+
+def scan_options(config: Namespace) -> ScanOptions:
+    """The options that `add_scan_arguments` added."""
+    return ScanOptions(**{one.name: config[one.name] for one in fields(ScanOptions)})

@@ -1,0 +1,48 @@
+"""Three textured scans, and what the commands make of them."""
+
+from collections.abc import Callable
+from pathlib import Path
+
+import pytest
+from pipeline_scans import FAST, SIZE, write_scan
+
+from skinnet.cli import main
+
+
+@pytest.fixture(scope="session")
+def scans(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """A folder of three scans: a.obj, b.obj and c.obj."""
+    folder = tmp_path_factory.mktemp("scans")
+    for seed, name in enumerate("abc", 1):
+        write_scan(folder / f"{name}.obj", seed)
+    return folder
+
+
+@pytest.fixture(scope="session")
+def maps(scans: Path) -> Path:
+    """The folder that `skinnet maps` makes of the three."""
+    files = [str(scans / f"{name}.obj") for name in "abc"]
+    assert main(["maps", *files, *FAST, f"--warp.size={SIZE}"]) == 0
+    return scans / "skinmaps"
+
+
+@pytest.fixture(scope="session")
+def model(maps: Path) -> Path:
+    """The folder that `skinnet build-model` makes of the three."""
+    folder = maps.parent / "skinmodel"
+    assert main(["build-model", str(maps), "-o", str(folder), "--model.samples=5"]) == 0
+    return folder
+
+
+@pytest.fixture
+def refused(capsys: pytest.CaptureFixture[str]) -> Callable[..., str]:
+    """Runs a command that is refused with exit code 2; the sentences on standard error."""
+
+    def run(*arguments: object) -> str:
+        capsys.readouterr()
+        assert main([str(argument) for argument in arguments]) == 2
+        said = capsys.readouterr().err
+        assert "Traceback" not in said
+        return said
+
+    return run
