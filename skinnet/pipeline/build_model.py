@@ -2,7 +2,7 @@
 
 import json
 import shutil
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import partial
 from pathlib import Path
 from typing import Any
@@ -17,7 +17,7 @@ from skinnet.appearance.joint_measures import measure_joint
 from skinnet.appearance.linear import LinearModel
 from skinnet.appearance.mapsfile import load_maps
 from skinnet.appearance.measures import Measures, measure
-from skinnet.appearance.plots import hybrid_sheet, linear_sheet, write_measures
+from skinnet.appearance.plots import Renderer, hybrid_sheet, linear_sheet, write_measures
 from skinnet.appearance.scales import equal_effect
 from skinnet.appearance.spool import spool
 from skinnet.appearance.stack import SubjectStack
@@ -25,10 +25,13 @@ from skinnet.appearance.subjects import SkinTexture
 from skinnet.errors import InputError
 from skinnet.files import write_text
 from skinnet.images import read_photo, write_png
+from skinnet.panel import TILE
 from skinnet.pipeline.command import add_output
 from skinnet.pipeline.progress import digest, say
+from skinnet.pipeline.relight import RelightSettings
 from skinnet.pipeline.scans import OUTPUT, ScanOptions
 from skinnet.pipeline.shapefile import load_fit
+from skinnet.shape.meshfile import read_mesh
 
 FOLDER = Path("skinmodel")
 MAPS = "_maps.npz"
@@ -108,7 +111,7 @@ def run(config: Namespace) -> int:
                 config.model.seed,
             )
         )
-    write_models(output, models, joint, measures, len(files))
+    write_models(output, models, joint, measures, renderer_of(files))
     shutil.rmtree(output / "stack")
     print(f"{output}: {len(files)} subjects; {table(measures)}", flush=True)
     return 0
@@ -190,25 +193,45 @@ def shape_of(maps: Path, modes: int) -> Float[np.ndarray, "modes"]:
     return np.pad(alpha, (0, modes - len(alpha)))
 
 
+def renderer_of(files: list[Path]) -> Renderer | None:
+    """Shows an albedo on the mean of the fitted faces; None where some have no mesh or no fit."""
+    stems = [file.with_name(file.name.removesuffix(MAPS)) for file in files]
+    meshes = [stem.with_name(f"{stem.name}_face.obj") for stem in stems]
+    fits = [stem.with_name(f"{stem.name}_shape.npz") for stem in stems]
+    if not all(file.is_file() for file in (*meshes, *fits)):
+        return None
+    found = [load_fit(file) for file in fits]
+    face = read_mesh(meshes[0])
+    shapes = [one.pose.inverse(one.vertices) for one in found]
+    if any(shape.shape != face.vertices.shape for shape in shapes):
+        return None
+    return partial(RelightSettings(size=TILE).picture, replace(face, vertices=np.mean(shapes, 0)))
+
+
 def write_models(
     output: Path,
     models: tuple[HybridModel, LinearModel],
     joint: JointModel | None,
     measures: list[Measures],
-    subjects: int,
+    renderer: Renderer | None,
 ) -> None:
     """Models, measures, Figure 8's plot and Figure 7's pictures."""
     hybrid, linear = models
+    shown = min(3, *(len(one.statistics.variances) for one in models))
+    sheets = {
+        "hybrid": hybrid_sheet(hybrid, components=shown, renderer=renderer),
+        "linear": linear_sheet(linear, components=shown, renderer=renderer),
+    }
     hybrid.save(output / "hybrid.npz")
     linear.save(output / "linear.npz")
     if joint is not None:
         joint.save(output / "joint.npz")
     write_measures(output / "measures.png", measures)
-    shown = min(3, *(len(one.statistics.variances) for one in models))
-    write_png(output / "components_hybrid.png", hybrid_sheet(hybrid, components=shown))
-    write_png(output / "components_linear.png", linear_sheet(linear, components=shown))
+    for name, picture in sheets.items():
+        write_png(output / f"components_{name}.png", picture)
     found: dict[str, Any] = {found.name: found.summary() for found in measures}
-    record = {"subjects": subjects, "texels": int(hybrid.mask.sum()), "measures": found}
+    subjects, texels = hybrid.statistics.subjects, int(hybrid.mask.sum())
+    record = {"subjects": subjects, "texels": texels, "measures": found}
     write_text(output / "measures.json", json.dumps(record, indent=2, allow_nan=False) + "\n")
 
 
