@@ -17,7 +17,7 @@ LEAST = 100
 STARTS = (0.6, 0.8, 1.0, 1.25, 1.6)
 """Overall scales at which the alternation is begun, times the ratio of the medians."""
 
-MIXING = 1e-3
+MIXING = 1e-2
 """Weight of the wish that channels mix little, as a share of the colours' own. Skin is so thin a
 sheet in RGB that without it shading and gloss in real textures turn into mixtures of any size."""
 

@@ -1,6 +1,5 @@
 """Changes to the pigments of a skin texture (Alotaibi & Smith 2017, Figure 6)."""
 
-import math
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -9,13 +8,16 @@ from jaxtyping import Float, Float32
 from skinnet.appearance.subjects import SkinTexture
 from skinnet.errors import InputError
 
+LARGEST = 10.0
+"""Largest factor."""
+
 
 @dataclass(frozen=True)
 class PigmentEdit:
     """What happens to a map of volume fractions: f -> scale f + add, or to one painted value.
 
     Args:
-        scale: factor, 0 or more.
+        scale: factor from 0 to 10.
         add: volume fraction that is added, in [-1, 1].
         paint: volume fraction in [0, 1] that takes the map's place; null leaves it.
     """
@@ -25,8 +27,11 @@ class PigmentEdit:
     paint: float | None = None
 
     def __post_init__(self) -> None:
-        if not 0 <= self.scale < math.inf:
-            raise InputError(f"scale is a factor of 0 or more; got {self.scale}.")
+        if not 0 <= self.scale <= LARGEST:
+            raise InputError(
+                f"scale is a factor from 0 to {LARGEST:g}; got {self.scale}. Was it given in "
+                "percent?"
+            )
         if not -1 <= self.add <= 1:
             raise InputError(
                 f"add is a volume fraction in [-1, 1]; got {self.add}. Was it given in percent?"

@@ -26,7 +26,7 @@ from skinnet.errors import InputError
 from skinnet.files import write_text
 from skinnet.images import read_photo, write_png
 from skinnet.panel import TILE
-from skinnet.pipeline.command import add_output
+from skinnet.pipeline.command import add_output, made
 from skinnet.pipeline.progress import digest, say
 from skinnet.pipeline.relight import RelightSettings
 from skinnet.pipeline.scans import OUTPUT, ScanOptions
@@ -86,10 +86,14 @@ def add_arguments(parser: ArgumentParser) -> None:
 
 def run(config: Namespace) -> int:
     """Write hybrid.npz, linear.npz and, if asked for, joint.npz; measures and pictures of them."""
-    output = config.output or FOLDER
+    output = made(config.output or FOLDER)
     files = found_maps(config.maps or [Path(OUTPUT)])
     stack = stacked(files, output / "stack")
-    cover = stack.cover(config.model.share, drawn_mask(config.model.mask, stack.size))
+    try:
+        cover = stack.cover(config.model.share, drawn_mask(config.model.mask, stack.size))
+    except InputError:
+        shutil.rmtree(output / "stack")
+        raise
     say(f"{len(files)} subjects: {cover}.")
     models = fitted_models(stack, cover.mask, config.model)
     measures = [measured(model, stack, config.model) for model in models]
@@ -121,7 +125,10 @@ def found_maps(places: list[Path]) -> list[Path]:
     """The maps named, and those in the folders named, each once, in the order of their names."""
     files: list[Path] = []
     for place in places:
+        if not place.exists():
+            raise InputError(f"There is no {place}; name *{MAPS} files or a folder of them.")
         inside = sorted(place.glob(f"*{MAPS}")) if place.is_dir() else [place]
+        inside = [file for file in inside if not place.is_dir() or not _edited(file)]
         if not inside:
             raise InputError(f"The folder {place} holds no *{MAPS}; make them with skinnet maps.")
         files += [file for file in inside if file not in files]
@@ -131,6 +138,14 @@ def found_maps(places: list[Path]) -> list[Path]:
             f"name more *{MAPS}."
         )
     return files
+
+
+def _edited(file: Path) -> bool:
+    """Whether maps were made by edit-maps; an edited face is not another person."""
+    edited = file.name.endswith(f"_edited{MAPS}")
+    if edited:
+        say(f"{file} is an edited face and is left out.")
+    return edited
 
 
 def stacked(files: list[Path], folder: Path) -> SubjectStack:
@@ -243,8 +258,8 @@ def table(measures: list[Measures]) -> str:
         at = {int(counts[i]): i for i in sorted({min(2, len(counts) - 1), len(counts) - 1})}
         lines += [
             f"{found.name} with {count}: {found.compactness[count - 1]:.1%} of the variance, "
-            f"{found.generalisation.mean[i]:.4f} left out, "
-            f"{found.specificity.mean[i]:.4f} from the nearest"
+            f"generalisation {found.generalisation.mean[i]:.4f}, "
+            f"specificity {found.specificity.mean[i]:.4f} (RMS, linear RGB)"
             for count, i in at.items()
         ]
     return "; ".join(lines)

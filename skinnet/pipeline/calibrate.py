@@ -18,9 +18,11 @@ from skinnet.exposure import exposure
 from skinnet.images import srgb_to_linear
 from skinnet.inversion import SkinInverse
 from skinnet.lightstage import spectrum_matrix
+from skinnet.optics import SkinOptics
 from skinnet.pipeline.progress import say
 from skinnet.reflectance import SkinReflectance
 
+WAYS = ("exposure", "full", "none")
 NODES = (256, 256)
 FEW = 5
 """Scans below which a full calibration cannot be trusted to have seen all kinds of skin."""
@@ -59,6 +61,14 @@ class ColourSettings:
     f_blood: tuple[float, float] = (0.0, 0.15)
     refine: bool = True
     seed: int = 0
+
+    def check(self) -> None:
+        """Raise `InputError` for names and files that cannot be used, before long work begins."""
+        spectrum_matrix(self.light, self.camera)
+        SkinOptics.preset(self.optics)
+        self.balance()
+        if self.calibration not in WAYS:
+            self._from_file([])
 
     def calibrated(self, samples: Samples) -> "Colours":
         """The calibration of some scans together, each given by its linear RGB colours [n, 3]."""

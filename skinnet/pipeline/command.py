@@ -31,6 +31,17 @@ def run(verb: str, arguments: Sequence[str], help_: str) -> int:
     return code
 
 
+def made(folder: Path) -> Path:
+    """The folder that a verb writes into, made if needed."""
+    try:
+        folder.mkdir(parents=True, exist_ok=True)
+    except OSError as error:
+        raise InputError(
+            f"{folder} cannot be made ({error.strerror}); choose another folder with -o."
+        ) from error
+    return folder
+
+
 def add_output(parser: ArgumentParser, default: str) -> None:
     """The folder that a verb writes into."""
     parser.add_argument(

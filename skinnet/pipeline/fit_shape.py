@@ -30,6 +30,9 @@ from skinnet.shape.registration import Registration, register
 NOTHING_NEAR = 10.0
 """RMS distance of the kept vertices in mm above which a fit has found no face."""
 
+UNLIKELY = 2.0
+"""RMS of the coefficients, in standard deviations, above which a fit is doubtful."""
+
 
 @dataclass(frozen=True)
 class Fitted:
@@ -85,6 +88,11 @@ def fitted(
     _check(found, scan, model)
     save_fit(files[0], found)
     result = Fitted(scan, found, stem, fingerprint)
+    if summary(result, model)["rms_deviations"] > UNLIKELY:
+        say(
+            f"{scan.path}: the fitted shape is an unlikely one for {model.name}; look at "
+            f"{files[2]}, and give a model of real faces with --model."
+        )
     write_mesh(files[1], result.mesh(model))
     write_png(files[2], fit_sheet(scan.mesh, result.mesh(model), found))
     write_record(files[3], fingerprint, summary(result, model))
@@ -97,7 +105,8 @@ def told(result: Fitted) -> str:
     end = "" if found.converged else "; it had not settled when its iterations ran out"
     return (
         f"{result.scan.path}: {found.rms:.2f} mm RMS over the nearest "
-        f"{found.kept.mean():.0%} of the model, unit of the scan {found.millimetres:.3g} mm{end}; "
+        f"{found.kept.mean():.0%} of the model, {np.percentile(found.distances, 95):.1f} mm at "
+        f"95 % of all of it; a unit of the scan is {found.millimetres:.3g} mm{end}; "
         f"{result.stem}_shape.npz, .obj, .png, .json"
     )
 

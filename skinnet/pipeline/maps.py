@@ -25,6 +25,9 @@ from skinnet.shape.projection import NORMAL_LIMIT, project_texture
 from skinnet.shape.tutte import tutte
 from skinnet.shape.warp import TextureSpace, Warped
 
+DOUBTFUL = 0.5
+"""Share of texels off the manifold above which maps are doubtful."""
+
 
 @dataclass(frozen=True)
 class WarpSettings:
@@ -88,6 +91,7 @@ def add_arguments(parser: ArgumentParser) -> None:
 def run(config: Namespace) -> int:
     """Fit, warp, calibrate on all scans together, invert; what is on disk already is kept."""
     options = scan_options(config)
+    config.colour.check()
     model = embedded(options.load_model(), config.warp.own_uv)
     space = texture_space(model, config.warp.size)
     skins: list[Skin] = []
@@ -146,6 +150,12 @@ def inverted(skin: Skin, factor: float, model: ShapeModel, colours: Colours) -> 
     face = skin.fitted.mesh(model)
     write_maps(stem, texture, colours.colour, face)
     found = write_record(record, fingerprint, summary(skin, texture, off, factor, colours))
+    if off > DOUBTFUL:
+        say(
+            f"{skin.fitted.scan.path}: {off:.0%} of the texels lie off the colours of skin, and "
+            "their pigments mean little; name the light and camera (--colour.light, .camera) or "
+            "something white in the texture (--colour.white)."
+        )
     mean = ", ".join(f"{name} {found[name]['median']:.3g}" for name in ("melanin", "hemoglobin"))
     print(
         f"{skin.fitted.scan.path}: median {mean}; {off:.1%} of the texels lie off the colours of "

@@ -10,9 +10,9 @@ from skinnet.appearance.hybrid import HybridModel
 from skinnet.appearance.mapsfile import save_maps
 from skinnet.errors import InputError
 from skinnet.images import linear_to_srgb, to_uint8, write_png
-from skinnet.panel import picture, pigment_map, sheet
+from skinnet.panel import picture, pigment_map, round_top, sheet
 from skinnet.pipeline.build_model import FOLDER
-from skinnet.pipeline.command import add_output
+from skinnet.pipeline.command import add_output, made
 
 
 def add_arguments(parser: ArgumentParser) -> None:
@@ -35,12 +35,11 @@ def run(config: Namespace) -> int:
     if not 0 <= config.spread <= 10:
         raise InputError(f"spread is a number of deviations in [0, 10]; got {config.spread}.")
     model = HybridModel.load(config.model)
-    output: Path = config.output or config.model.parent / "samples"
-    output.mkdir(parents=True, exist_ok=True)
+    output = made(config.output or config.model.parent / "samples")
     betas = config.spread * model.sample(config.count, config.seed)
     textures = [model.texture(beta, f"sample {i:02}") for i, beta in enumerate(betas)]
     tops = [
-        float(np.max([np.percentile(getattr(one, name)[one.mask], 99) for one in textures]))
+        round_top(max(float(np.percentile(getattr(one, name)[one.mask], 99)) for one in textures))
         for name in ("f_mel", "f_blood")
     ]
     rows: list[list[Image.Image]] = [[], [], []]

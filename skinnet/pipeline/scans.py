@@ -9,7 +9,7 @@ from jaxtyping import Float
 from jsonargparse import ArgumentParser, Namespace
 
 from skinnet.errors import InputError
-from skinnet.pipeline.command import add_output
+from skinnet.pipeline.command import add_output, made
 from skinnet.pipeline.progress import say
 from skinnet.shape.landmarks import check_landmarks, read_landmarks
 from skinnet.shape.mesh import Mesh
@@ -114,14 +114,7 @@ def beside(path: Path) -> list[Path]:
 
 def place(scan: Path, output: Path | None) -> Path:
     """Where the files of a scan go, without their ends: FOLDER/NAME."""
-    folder = output or scan.parent / OUTPUT
-    try:
-        folder.mkdir(parents=True, exist_ok=True)
-    except OSError as error:
-        raise InputError(
-            f"{folder} cannot be made ({error.strerror}); choose another folder with -o."
-        ) from error
-    return folder / scan.stem
+    return made(output or scan.parent / OUTPUT) / scan.stem
 
 
 def add_scan_arguments(parser: ArgumentParser) -> None:

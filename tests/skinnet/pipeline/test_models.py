@@ -80,6 +80,7 @@ def test_subjects_of_another_size_or_colour_are_refused(
 
 def test_too_few_subjects_are_refused(maps: Path, tmp_path: Path, refused: Refused) -> None:
     assert "holds no *_maps.npz" in refused("build-model", tmp_path)
+    assert "There is no" in refused("build-model", tmp_path / "absent")
     said = refused("build-model", maps / "a_maps.npz", "-o", tmp_path)
     assert "1 subjects were found" in said
     said = refused("build-model", maps, "-o", tmp_path, "--model.components=9")
@@ -174,7 +175,7 @@ def test_maps_without_a_mesh_are_edited_all_the_same(
 @pytest.mark.parametrize(
     ("option", "words"),
     [
-        ("--melanin=-1", "scale is a factor of 0 or more"),
+        ("--melanin=-1", "scale is a factor from 0 to 10"),
         ("--melanin_add=20", "Was it given in percent?"),
         ("--hemoglobin_paint=5", "Was it given in percent?"),
         ("--mask=absent.png", "absent.png"),
