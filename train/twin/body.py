@@ -77,7 +77,7 @@ def _torso(
     z = 0.9 * neck.deep * (1 - out) + build.deep * out
     # A quarter of a superellipse ends upright, as arms and chest do; the neck rises from it.
     round_ = 1 - (1 - out**build.edge).clip(0) ** (1 / build.edge)
-    y = build.foot + off + 0.1 * (1 - out) ** 4 - build.fall * (0.25 * out + 0.75 * round_)
+    y = build.foot + off + 0.3 * (1 - out) ** 4 - build.fall * (0.25 * out + 0.75 * round_)
     under = (along - 1).clip(0)
     y = y * (1 - under) + BOTTOM * under
     middle = neck.z - 0.1 * out

@@ -4,12 +4,12 @@ import hashlib
 import json
 import os
 import sys
-import zipfile
 from collections.abc import Iterator
 from dataclasses import asdict, dataclass
 from functools import cache
 from multiprocessing import get_context
 from pathlib import Path
+from zipfile import BadZipFile
 
 import numpy as np
 
@@ -114,11 +114,11 @@ def _write(path: Path, cast_: Buffers, settings: Settings) -> None:
 def _fill(stack: Buffers, index: int, path: Path, settings: Settings) -> bool:
     """Whether a file holds the cast asked for, which is then copied into the stack."""
     try:
-        with np.load(path, allow_pickle=False) as file:
+        with path.open("rb") as stream, np.load(stream, allow_pickle=False) as file:
             if json.loads(str(file["settings"])) != asdict(settings):
                 return False
             arrays = [file[name] for name in Buffers._fields]
-    except (OSError, ValueError, KeyError, EOFError, zipfile.BadZipFile):
+    except (OSError, ValueError, KeyError, EOFError, TypeError, BadZipFile):
         return False
     for whole, one in zip(stack, arrays, strict=True):
         if whole.shape[1:] != one.shape or whole.dtype != one.dtype:

@@ -77,8 +77,9 @@ def curtain(skin: Part, cut: Cut, draw: np.random.Generator) -> Part:
         np.broadcast_arrays(wide * round_ * np.sin(turn), y + ends, front * round_ * np.cos(turn)),
         -1,
     ).reshape(-1, 3)
-    # The edges in front lie on the temples.
-    points[:, [0, 2]] *= (1 - 0.14 * np.abs(share + 0 * y) ** 6).reshape(-1, 1)
+    # In front it turns inwards: onto the temples above, behind the jaw below.
+    inwards = 0.14 + 0.22 * ((0.1 - y) / 0.4).clip(0, 1)
+    points[:, [0, 2]] *= (1 - inwards * np.abs(share) ** 9).reshape(-1, 1)
     points[:, [0, 2]] *= 1 + 0.04 * _waves(points, draw)[:, None]
     azimuth = np.arctan2(np.sin(turn), np.cos(turn)) + 0 * y
     chart = np.stack([azimuth, np.arctan(y) + 0 * turn], -1).reshape(-1, 2)

@@ -2,6 +2,7 @@
 
 from dataclasses import dataclass
 from pathlib import Path
+from zipfile import BadZipFile
 
 import numpy as np
 from jaxtyping import Float, Int, UInt8
@@ -69,14 +70,15 @@ def load_ict_head(path: Path) -> IctHead:
 
 def _checked(path: Path) -> dict[str, np.ndarray]:
     try:
-        with np.load(path, allow_pickle=False) as file:
+        # A file of our own is closed even if NumPy finds it is no .npz.
+        with path.open("rb") as stream, np.load(stream, allow_pickle=False) as file:
             arrays = {name: file[name] for name in SHAPES}
     except KeyError as error:
         raise InputError(
             f"{path} lacks {error.args[0].split()[0]}; an .npz of ICT-FaceKit holds "
             f"{', '.join(SHAPES)}."
         ) from error
-    except (OSError, ValueError, EOFError) as error:
+    except (OSError, ValueError, EOFError, TypeError, BadZipFile) as error:
         raise InputError(f"{path} cannot be read as an .npz ({error}); copy it again.") from error
     for name, shape in SHAPES.items():
         found = arrays[name].shape
