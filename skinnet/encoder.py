@@ -9,11 +9,21 @@ from torch import Tensor, nn
 
 from skinnet.errors import InputError
 
-WIDTHS = (16, 32, 64, 128, 160)
+WIDTHS = (24, 40, 80, 128, 160)
+
+HEAD = 24
+"""Channels of the head, which alone works at the photograph's own resolution."""
+
+_PIXEL = 9
+_DARKEST = 4e-3
 
 
 class SkinEncoder(nn.Module):
-    """A U-Net with a shared trunk; its outputs get their meaning and range from `controls`.
+    """A U-Net from half the photograph's resolution down, and a head at its own.
+
+    The head sees display values, linear ones and their logarithms, in which pigments are nearly
+    linear, and is modulated by what the deepest level makes of the whole scene: how a colour reads
+    depends on the light. Outputs get their meaning and range from `controls`.
 
     Any size from 1 x 1 up: halvings round up, and features are brought to the size of the level
     above, so nothing is padded or cropped. `maps` and `globals` are the numbers of output channels
@@ -26,33 +36,59 @@ class SkinEncoder(nn.Module):
             raise InputError(
                 f"widths holds the channels of one level or more, as {WIDTHS}; got ()."
             )
-        self.stem = _stage(3, widths[0], stride=1)
+        deepest = widths[-1]
+        self.stem = _stage(3, widths[0], stride=2)
         pairs = list(pairwise(widths))
         self.down = nn.ModuleList(_stage(fine, coarse, stride=2) for fine, coarse in pairs)
-        self.scene = nn.Sequential(nn.Linear(widths[-1], widths[-1]), nn.ReLU())
-        self.globals = nn.Linear(widths[-1], globals)
+        self.scene = nn.Sequential(nn.Linear(2 * deepest, deepest), nn.ReLU())
+        self.back = nn.Linear(deepest, deepest)
+        self.globals = nn.Linear(deepest, globals)
         self.up = nn.ModuleList(_Merge(coarse, fine) for fine, coarse in reversed(pairs))
-        self.head = nn.Sequential(_conv(widths[0] + 6, widths[0]), nn.Conv2d(widths[0], maps, 1))
+        self.head = _Head(widths[0], deepest, maps)
 
     def forward(
         self,
         srgb: Float[Tensor, "batch 3 height width"],
         linear: Float[Tensor, "batch 3 height width"],
     ) -> tuple[Float[Tensor, "batch maps height width"], Float[Tensor, "batch globals"]]:
-        """Raw maps and globals of display sRGB in [0, 1] and the same photograph in linear sRGB.
-
-        The trunk sees display values, which are evenly spaced to the eye; the head sees both, so
-        that what is not skin can be copied.
-        """
+        """Raw maps and globals of display sRGB in [0, 1] and the same photograph in linear sRGB."""
         features = [self.stem(4 * srgb - 2)]
         for stage in self.down:
             features.append(stage(features[-1]))
         x = features.pop()
-        scene = self.scene(x.mean((-2, -1)))
-        x = x + scene[..., None, None]
+        scene = self.scene(torch.cat([x.mean((-2, -1)), x.amax((-2, -1))], 1))
+        x = x + self.back(scene)[..., None, None]
         for merge in self.up:
             x = merge(x, features.pop())
-        return self.head(torch.cat([x, srgb, linear], 1)), self.globals(scene)
+        pixel = torch.cat([srgb, linear, 0.5 * torch.log(linear + _DARKEST)], 1)
+        return self.head(pixel, x, scene), self.globals(scene)
+
+
+class _Head(nn.Module):
+    """A pixel and the features around it to its maps, modulated by the scene (FiLM, Perez et al.
+    2018)."""
+
+    def __init__(self, features: int, scene: int, maps: int):
+        super().__init__()
+        self.look = nn.Conv2d(_PIXEL, HEAD, 3, padding=1, bias=False)
+        self.project = nn.Conv2d(features, HEAD, 1, bias=False)
+        self.mixed = nn.Sequential(nn.BatchNorm2d(HEAD), nn.ReLU(inplace=True))
+        self.modulate = nn.Linear(scene, 2 * HEAD)
+        self.deepen = _conv(HEAD, HEAD, size=1)
+        self.last = nn.Conv2d(HEAD, maps, 1)
+
+    def forward(
+        self,
+        pixel: Float[Tensor, "batch c height width"],
+        features: Float[Tensor, "batch f h w"],
+        scene: Float[Tensor, "batch s"],
+    ) -> Float[Tensor, "batch maps height width"]:
+        # Projected before it is enlarged, which is the same and four times cheaper.
+        around = F.interpolate(self.project(features), size=pixel.shape[-2:], mode="bilinear")
+        mixed = self.mixed(self.look(pixel) + around)
+        scale, shift = self.modulate(scene)[..., None, None].chunk(2, 1)
+        maps: Tensor = self.last(self.deepen(mixed * (1 + scale) + shift))
+        return maps
 
 
 class _Merge(nn.Module):
@@ -75,10 +111,10 @@ def _stage(inputs: int, outputs: int, stride: int) -> nn.Sequential:
     return nn.Sequential(_conv(inputs, outputs, stride), _conv(outputs, outputs))
 
 
-def _conv(inputs: int, outputs: int, stride: int = 1) -> nn.Sequential:
+def _conv(inputs: int, outputs: int, stride: int = 1, size: int = 3) -> nn.Sequential:
     # Batch rather than group normalisation: it folds into the convolution on export.
     return nn.Sequential(
-        nn.Conv2d(inputs, outputs, 3, stride, padding=1, bias=False),
+        nn.Conv2d(inputs, outputs, size, stride, padding=size // 2, bias=False),
         nn.BatchNorm2d(outputs),
         nn.ReLU(inplace=True),
     )

@@ -11,11 +11,12 @@ from skinnet.capture import Capture
 class Batch(NamedTuple):
     """Photographs in display sRGB [batch, 3, height, width], and what is known of them.
 
-    `mask` is the skin mask, true or estimated. `truth` and `capture` are there for synthetic
-    portraits only.
+    `mask` is the skin mask, true or estimated. `truth`, `capture` and `albedo`, the linear sRGB of
+    the skin itself, are there for rendered portraits only.
     """
 
     photograph: Tensor
     mask: Tensor
     truth: SkinMaps | None = None
     capture: Capture | None = None
+    albedo: Tensor | None = None

@@ -26,8 +26,9 @@ from train.logs import CurveLogger
 from train.portraits import Portraits
 from train.synthetic import SyntheticFaces
 from train.task import SkinTask
+from train.twin.faces import TwinFaces
 
-__all__ = ["FittedFaces", "Portraits", "SkinCLI", "SyntheticFaces", "main"]
+__all__ = ["FittedFaces", "Portraits", "SkinCLI", "SyntheticFaces", "TwinFaces", "main"]
 
 
 class SentenceParser(LightningArgumentParser):

@@ -37,7 +37,7 @@ class LossWeights:
     specular: NonNegativeFloat = 0.01
     smoothness: NonNegativeFloat = 0.02
     shading: NonNegativeFloat = 0.02
-    pigments: NonNegativeFloat = 4.0
+    pigments: NonNegativeFloat = 8.0
     lighting: NonNegativeFloat = 1.0
     white_balance: NonNegativeFloat = 0.05
 

@@ -1,0 +1,134 @@
+"""The photometric twin as training data: heads ray-cast once, photographed anew on every step."""
+
+from functools import partial
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from jsonargparse.typing import NonNegativeInt, PositiveInt
+from lightning import LightningDataModule, Trainer
+from numpy.typing import NDArray
+from torch import Tensor
+from torch.utils.data import DataLoader, Dataset
+
+from skinnet.decoder import SkinDecoder
+from train.batch import Batch
+from train.stream import StreamLoader
+from train.synthetic import seen_samples
+from train.twin.cache import geometry
+from train.twin.lot import draw_lot
+from train.twin.picture import render
+
+SPLITS = {"train": 0, "val": 1, "test": 2}
+Drawn = dict[str, NDArray[Any]]
+
+
+class Lots(Dataset[Drawn]):
+    """Heads with a lot each, drawn from (seed, split, index): the same on every machine.
+
+    Heads take turns, so that a set as large as their number, or a multiple, has each as often.
+    """
+
+    def __init__(self, heads: Drawn, split: str, samples: int, seed: int):
+        self.heads, self.samples = heads, samples
+        self.key = (seed, SPLITS[split], 7)
+
+    def __len__(self) -> int:
+        return self.samples
+
+    def __getitem__(self, index: int) -> Drawn:
+        count, size = self.heads["label"].shape[:2]
+        buffers = {name: value[index % count] for name, value in self.heads.items()}
+        return {**buffers, **draw_lot(np.random.default_rng([*self.key, index]), size)}
+
+
+class TwinFaces(LightningDataModule):
+    """Heads with all ground truth under varied skin, light, camera and exposure.
+
+    Their geometry is ray-cast once and kept on disk; everything else is drawn afresh on every step
+    and rendered on the device that trains. Training never repeats a picture; validation and test
+    have heads of their own, the test cameras of its own too, and both are the same on every run.
+
+    Args:
+        size: side of the square pictures in pixels.
+        batch_size: pictures in a batch.
+        heads: heads of the training set.
+        val_heads: heads of the validation set.
+        test_heads: heads of the test set.
+        train_samples: pictures that are called an epoch.
+        val_samples: pictures of the validation set.
+        test_samples: pictures of the test set.
+        ict: ICT-FaceKit's model as an .npz; without it all heads are procedural.
+        geometry: folder in which the heads are kept.
+        seed: of everything that is drawn.
+        workers: processes that draw pictures; 0 draws them in the training process.
+    """
+
+    def __init__(
+        self,
+        size: PositiveInt = 160,
+        batch_size: PositiveInt = 32,
+        heads: PositiveInt = 800,
+        val_heads: PositiveInt = 64,
+        test_heads: PositiveInt = 128,
+        train_samples: PositiveInt = 6400,
+        val_samples: PositiveInt = 128,
+        test_samples: PositiveInt = 512,
+        ict: str | None = None,
+        geometry: str = "runs/geometry",
+        seed: NonNegativeInt = 0,
+        workers: NonNegativeInt = 0,
+    ):
+        super().__init__()
+        self.size, self.batch_size = size, batch_size
+        self.heads = {"train": heads, "val": val_heads, "test": test_heads}
+        self.samples = {"train": train_samples, "val": val_samples, "test": test_samples}
+        self.ict = None if ict is None else Path(ict)
+        self.geometry, self.seed, self.workers = Path(geometry), seed, workers
+        self.decoder = SkinDecoder()
+        self.buffers: dict[str, Drawn] = {}
+
+    @property
+    def described(self) -> str:
+        """What a model card says of these data."""
+        kind = "procedural heads" if self.ict is None else "ICT-FaceKit and procedural heads"
+        return f"{self.heads['train']} {kind} of skinnet's twin, seed {self.seed}, {self.size} px"
+
+    def setup(self, stage: str) -> None:
+        """Build or read the heads that a stage needs: fit, validate or test."""
+        for split in {"fit": ("train", "val"), "validate": ("val",)}.get(stage, (stage,)):
+            if split not in self.buffers:
+                cast = geometry(
+                    self.geometry, self.size, self.heads[split], split, self.seed, self.ict
+                )
+                # Torch counts with signed integers; the bits are the same.
+                self.buffers[split] = cast._replace(seen=cast.seen.view(np.int64))._asdict()
+
+    def train_dataloader(self) -> StreamLoader:
+        return self.stream(self.samples["train"] // self.batch_size, self.trainer)
+
+    def stream(self, steps: int, trainer: Trainer | None) -> StreamLoader:
+        """Training pictures in epochs of that many steps, from where the trainer stands."""
+        samples = max(steps, 1) * self.batch_size
+        lots = Lots(self.buffers["train"], "train", samples, self.seed)
+        seen = partial(seen_samples, trainer, self.batch_size)
+        return StreamLoader(lots, self.batch_size, samples, seen, self.workers)
+
+    def val_dataloader(self) -> DataLoader[Drawn]:
+        return self._fixed("val")
+
+    def test_dataloader(self) -> DataLoader[Drawn]:
+        return self._fixed("test")
+
+    def on_after_batch_transfer(self, batch: Any, dataloader_idx: int) -> Batch:
+        lot: dict[str, Tensor] = batch
+        testing = self.trainer is not None and self.trainer.testing
+        return self.render(lot, "test" if testing else "train")
+
+    def render(self, lot: dict[str, Tensor], split: str) -> Batch:
+        """Photographs of a batch of lots, with the cameras of a split."""
+        return render(lot, self.decoder.to(lot["f_mel"].device), split)
+
+    def _fixed(self, split: str) -> DataLoader[Drawn]:
+        lots = Lots(self.buffers[split], split, self.samples[split], self.seed)
+        return DataLoader(lots, self.batch_size, num_workers=self.workers)
