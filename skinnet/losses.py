@@ -1,10 +1,12 @@
 """Losses of the autoencoder, each a mean over the photographs of a batch.
 
+A photograph's own loss does not depend on the others: processes that share a batch evenly have the
+mean of their losses in common, and it is that of the whole batch.
+
 Images are linear sRGB [batch, 3, height, width], maps [batch, height, width], and a mask holds the
 probability that a pixel is skin.
 """
 
-import torch.nn.functional as F
 from jaxtyping import Float
 from kornia.color import rgb_to_grayscale
 from kornia.filters import gaussian_blur2d, spatial_gradient
@@ -67,7 +69,9 @@ def offset_penalty(maps: SkinMaps, mask: Map) -> Scalar:
 
 def skin_mask(maps: SkinMaps, mask: Map) -> Scalar:
     """Cross entropy of the skin mask."""
-    return F.binary_cross_entropy(maps.mask.clamp(1e-6, 1 - 1e-6), mask)
+    # torch's own refuses what is not a number, on a GPU by ending the process.
+    skin = maps.mask.clamp(1e-6, 1 - 1e-6)
+    return -(mask * skin.log() + (1 - mask) * (1 - skin).log()).mean()
 
 
 def pigments(maps: SkinMaps, truth: SkinMaps) -> Scalar:
@@ -101,4 +105,5 @@ def _root(fraction: Map, largest: float) -> Map:
 
 
 def _mean(value: Map, weight: Map) -> Scalar:
-    return (value * weight).sum() / weight.sum().clamp_min(1)
+    over = (-2, -1)
+    return ((value * weight).sum(over) / weight.sum(over).clamp_min(1)).mean()

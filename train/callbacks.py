@@ -27,6 +27,8 @@ class LastCheckpoint(Callback):
 
     def on_train_batch_end(self, trainer: Trainer, *_: Any) -> None:
         late = time.monotonic() - self.saved >= self.seconds
+        # Clocks differ between processes, and all of them must come to save.
+        late = trainer.strategy.reduce_boolean_decision(late, all=False)
         if late or trainer.global_step == trainer.max_steps:
             self._save(trainer)
 
@@ -39,7 +41,8 @@ class LastCheckpoint(Callback):
         # Renamed into place: a kill while writing leaves the checkpoint before.
         beside = self.path.with_name(".last.ckpt.part")
         trainer.save_checkpoint(beside, weights_only=False)
-        beside.replace(self.path)
+        if trainer.is_global_zero:
+            beside.replace(self.path)
         self.saved = time.monotonic()
 
 
@@ -58,7 +61,7 @@ class PictureGrid(Callback):
         self, trainer: Trainer, pl_module: LightningModule, outputs: Any, batch: Batches,
         batch_idx: int, dataloader_idx: int = 0,
     ) -> None:  # fmt: skip
-        if batch_idx or trainer.sanity_checking:
+        if batch_idx or trainer.sanity_checking or not trainer.is_global_zero:
             return
         parts = by_name(batch)
         count = max(self.portraits // len(parts), 1)

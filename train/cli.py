@@ -7,7 +7,7 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import Any, NoReturn
 
-from lightning import LightningDataModule, Trainer
+from lightning import Callback, LightningDataModule, Trainer
 from lightning.pytorch.callbacks import (
     LearningRateMonitor,
     ModelCheckpoint,
@@ -22,6 +22,7 @@ from skinnet.checkpoint import read_checkpoint
 from skinnet.errors import InputError
 from train.callbacks import LastCheckpoint, PictureGrid
 from train.fitted import FittedFaces
+from train.guards import FiniteGuard
 from train.logs import CurveLogger
 from train.portraits import Portraits
 from train.synthetic import SyntheticFaces
@@ -63,8 +64,6 @@ class SkinCLI(LightningCLI):
     def instantiate_trainer(self, **kwargs: Any) -> Trainer:
         config = self.config[self.subcommand]
         run = config.run
-        if self.subcommand == "fit" and config.ckpt_path is None:
-            keep_previous(Path(run))
         loggers = [TensorBoardLogger(run, name="", version=""), CurveLogger(run)]
         best = ModelCheckpoint(
             run,
@@ -73,13 +72,24 @@ class SkinCLI(LightningCLI):
             enable_version_counter=False,
             save_on_train_epoch_end=False,
         )
-        callbacks = [best, LastCheckpoint(run), PictureGrid(run), LearningRateMonitor()]
-        callbacks += kwargs.pop("callbacks", None) or []
+        callbacks = [best, FiniteGuard(run), LastCheckpoint(run)]
+        callbacks += [PictureGrid(run), LearningRateMonitor()]
+        callbacks += _as_list(self.config_init[self.subcommand].trainer.callbacks)
         if config.trainer.enable_progress_bar is not False:
             callbacks.append(_bar())
-        return super().instantiate_trainer(
+        trainer = super().instantiate_trainer(
             logger=loggers, callbacks=callbacks, default_root_dir=run, **kwargs
         )
+        # Of several processes only the first may rename; a trainer knows which one that is.
+        if self.subcommand == "fit" and config.ckpt_path is None and trainer.is_global_zero:
+            keep_previous(Path(run))
+        return trainer
+
+
+def _as_list(callbacks: Callback | list[Callback] | None) -> list[Callback]:
+    if callbacks is None:
+        return []
+    return callbacks if isinstance(callbacks, list) else [callbacks]
 
 
 def check_checkpoint(subcommand: str, path: str | None) -> None:

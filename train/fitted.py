@@ -83,7 +83,7 @@ class FittedFaces(LightningDataModule):
             wear a skin drawn from it.
         size: side of the square pictures in pixels.
         texels: side of the skin textures that pictures are made of.
-        batch_size: pictures in a batch.
+        batch_size: pictures in a batch of each process.
         shots: sides from which each face is seen.
         train_samples: pictures that are called an epoch.
         val_samples: pictures of the validation set.

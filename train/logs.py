@@ -5,6 +5,7 @@ from pathlib import Path
 from typing import Any
 
 from lightning.pytorch.loggers import Logger
+from lightning.pytorch.utilities import rank_zero_only
 
 
 class CurveLogger(Logger):
@@ -28,6 +29,7 @@ class CurveLogger(Logger):
     def log_hyperparams(self, *args: Any, **kwargs: Any) -> None:
         """The configuration is saved as config.yaml."""
 
+    @rank_zero_only
     def log_metrics(self, metrics: dict[str, float], step: int | None = None) -> None:
         """Append each metric of this step."""
         new = not self.path.exists()

@@ -1,5 +1,7 @@
 """A folder of photographs as training data, without any truth."""
 
+import csv
+import io
 import sys
 from functools import partial
 from pathlib import Path
@@ -8,14 +10,16 @@ from typing import Any, NamedTuple
 import numpy as np
 from jsonargparse.typing import NonNegativeInt, PositiveInt, restricted_number_type
 from lightning import LightningDataModule
-from lightning.pytorch.utilities import CombinedLoader
+from lightning.pytorch.utilities import CombinedLoader, rank_zero_only
 from numpy.typing import NDArray
 from torch.utils.data import DataLoader, Dataset
 
 from skinnet.errors import InputError
 from skinnet.faces import crop_box, find_face, resize, skin_mask
+from skinnet.files import write_text
 from skinnet.images import read_photo
 from train.batch import Batch
+from train.guards import listed
 from train.stream import StreamLoader
 from train.synthetic import SyntheticFaces, seen_samples
 
@@ -53,14 +57,17 @@ class Crops(Dataset[Crop]):
 class Portraits(LightningDataModule):
     """Photographs of faces, found, cropped and masked by `skinnet.faces`.
 
-    Unreadable pictures and pictures without a face are skipped and counted. Every step also sees
-    a batch of `synthetic`, so that the maps keep their meaning.
+    Unreadable pictures and pictures without a face are skipped, counted, and listed in
+    `skipped.csv` of the run. Every step also sees a batch of `synthetic`, so that the maps keep
+    their meaning.
 
     Args:
         folder: of the photographs, searched with its subfolders.
         size: side of the square crops in pixels.
-        batch_size: photographs in a batch.
+        batch_size: photographs in a batch of each process.
         val_share: share of the photographs that is kept for validation.
+        unreadable_share: share of the pictures that may be unreadable; with more, training does not
+            start.
         seed: of the order, the mirroring and the choice of validation photographs.
         synthetic: synthetic faces of the same size to train on beside the photographs.
     """
@@ -71,6 +78,7 @@ class Portraits(LightningDataModule):
         size: PositiveInt = 128,
         batch_size: PositiveInt = 16,
         val_share: Share = 0.1,  # type: ignore[valid-type]
+        unreadable_share: Share = 0.1,  # type: ignore[valid-type]
         seed: NonNegativeInt = 0,
         synthetic: SyntheticFaces | None = None,
     ):
@@ -79,6 +87,7 @@ class Portraits(LightningDataModule):
         self.size = size
         self.batch_size = batch_size
         self.val_share = val_share
+        self.unreadable_share = unreadable_share
         self.seed = seed
         self.synthetic = synthetic or SyntheticFaces(size=size, batch_size=batch_size)
         self.crops: dict[str, Crops] = {}
@@ -91,7 +100,9 @@ class Portraits(LightningDataModule):
     def setup(self, stage: str) -> None:
         if self.crops:
             return
-        crops = find_crops(self.folder, self.size)
+        crops, skipped = find_crops(self.folder, self.size, self.unreadable_share)
+        if self.trainer is not None and self.trainer.is_global_zero:
+            write_skipped(skipped, Path(self.trainer.default_root_dir) / "skipped.csv")
         order = np.random.default_rng(self.seed).permutation(len(crops))
         kept = max(1, round(self.val_share * len(crops)))
         if len(crops) <= kept:
@@ -125,33 +136,84 @@ class Portraits(LightningDataModule):
         return {"portraits": Batch(photograph.movedim(-1, 1), mask), "synthetic": synthetic}
 
 
-def find_crops(folder: Path, size: int) -> list[Crop]:
-    """The faces of all pictures in a folder, in the order of their names.
+class Skipped(NamedTuple):
+    """A picture that training goes without, and why, in words."""
 
-    Raises `InputError` if there is no folder, or no picture with a face in it.
+    path: Path
+    reason: str
+    readable: bool
+
+
+def find_crops(
+    folder: Path, size: int, unreadable_share: float = 0.1
+) -> tuple[list[Crop], list[Skipped]]:
+    """The faces of all pictures in a folder, in the order of their names, and what was skipped.
+
+    Raises `InputError` if there is no folder or no picture in it, if more than `unreadable_share`
+    of the pictures cannot be read, or if none shows a face.
     """
-    if not folder.is_dir():
-        raise InputError(f"{folder} is not a folder; give the folder of your photographs.")
-    pictures = sorted(path for path in folder.rglob("*") if path.suffix.lower() in SUFFIXES)
-    crops = [crop for path in pictures if (crop := _crop(path, size)) is not None]
+    pictures = find_pictures(folder)
+    found = [_crop(path, size) for path in pictures]
+    crops = [each for each in found if isinstance(each, Crop)]
+    skipped = [each for each in found if isinstance(each, Skipped)]
+    unreadable = [str(each.path) for each in skipped if not each.readable]
+    if len(unreadable) > unreadable_share * len(pictures):
+        raise InputError(_too_many(folder, unreadable, len(pictures), unreadable_share))
     if not crops:
         raise InputError(
             f"{folder} holds no photograph with a face in it ({len(pictures)} pictures looked at)."
         )
-    skipped = len(pictures) - len(crops)
-    print(f"{folder}: {len(crops)} faces, {skipped} pictures skipped", file=sys.stderr)
-    return crops
+    _report(folder, len(crops), unreadable, len(skipped) - len(unreadable))
+    return crops, skipped
 
 
-def _crop(path: Path, size: int) -> Crop | None:
+def find_pictures(folder: Path) -> list[Path]:
+    """Pictures in a folder and its subfolders, by name; `InputError` if there is none."""
+    if not folder.is_dir():
+        raise InputError(f"{folder} is not a folder; give the folder of your photographs.")
+    pictures = sorted(path for path in folder.rglob("*") if path.suffix.lower() in SUFFIXES)
+    if not pictures:
+        raise InputError(
+            f"{folder} holds no photographs; those are files in {', '.join(SUFFIXES)}."
+        )
+    return pictures
+
+
+def write_skipped(skipped: list[Skipped], path: Path) -> None:
+    """Write a table of the pictures that were skipped; none are a table without rows."""
+    text = io.StringIO()
+    rows = csv.writer(text, lineterminator="\n")
+    rows.writerow(("picture", "reason"))
+    rows.writerows((each.path, each.reason) for each in skipped)
+    path.parent.mkdir(parents=True, exist_ok=True)
+    write_text(path, text.getvalue())
+
+
+def _too_many(folder: Path, unreadable: list[str], pictures: int, allowed: float) -> str:
+    return (
+        f"{len(unreadable)} of {pictures} pictures in {folder} cannot be read "
+        f"({len(unreadable) / pictures:.0%}, and {allowed:.0%} may): {listed(unreadable, 5)}. "
+        "Repair or remove them, or allow more with --data.init_args.unreadable_share."
+    )
+
+
+@rank_zero_only
+def _report(folder: Path, faces: int, unreadable: list[str], faceless: int) -> None:
+    said = f"{folder}: {faces} faces, {len(unreadable) + faceless} pictures skipped"
+    parts = [f"{faceless} without a face"] if faceless else []
+    if unreadable:
+        parts.append(f"{len(unreadable)} unreadable: {listed(unreadable, 10)}")
+    print(f"{said} ({'; '.join(parts)})" if parts else said, file=sys.stderr)
+
+
+def _crop(path: Path, size: int) -> Crop | Skipped:
     try:
         photo = read_photo(path)
     except InputError as error:
-        print(error, file=sys.stderr)
-        return None
+        return Skipped(path, str(error), readable=False)
     face = find_face(photo)
     if face is None:
-        return None
+        return Skipped(path, "No face was found in it.", readable=True)
     box = crop_box(face, photo.shape[1], photo.shape[0])
     mask = skin_mask(photo, face)[box.slices]
     scale = size / max(box.width, box.height)

@@ -3,30 +3,38 @@
 from collections.abc import Callable, Iterator
 from typing import Any
 
-from torch.utils.data import DataLoader, Dataset, Sampler
+from torch import distributed
+from torch.utils.data import DataLoader, Dataset
+from torch.utils.data.distributed import DistributedSampler
 
 
-class StreamSampler(Sampler[int]):
+class StreamSampler(DistributedSampler[int]):
     """Places in an endless stream: from the first not yet seen to the end of its epoch.
 
-    `seen` says how many samples training has seen over all epochs. It is asked whenever an epoch
-    starts, after a resume too, where Lightning itself would start the epoch's data again.
+    `seen` says how many samples this process has seen over all epochs. It is asked whenever an
+    epoch starts, after a resume too, where Lightning itself would start the epoch's data again.
+    Processes that train together take turns, so that each step sees the samples that one process
+    would see in it; Lightning leaves a `DistributedSampler` as it is.
+
+    Args:
+        epoch: samples of an epoch over all processes, a multiple of their number.
+        seen: see above.
+        replicas: processes that train together.
+        rank: which of them this is.
     """
 
-    def __init__(self, epoch: int, seen: Callable[[], int]):
-        self.epoch = epoch
+    def __init__(self, epoch: int, seen: Callable[[], int], replicas: int = 1, rank: int = 0):
+        super().__init__(range(epoch), replicas, rank, shuffle=False)  # type: ignore[arg-type]
         self.seen = seen
 
     def __iter__(self) -> Iterator[int]:
-        start = self.seen()
-        return iter(range(start, (start // self.epoch + 1) * self.epoch))
-
-    def __len__(self) -> int:
-        return self.epoch
+        start = self.seen() * self.num_replicas
+        end = (start // self.total_size + 1) * self.total_size
+        return iter(range(start + self.rank, end, self.num_replicas))
 
 
 class StreamLoader(DataLoader[Any]):
-    """A loader over a `StreamSampler`.
+    """A loader over a `StreamSampler`, `batch_size` samples a step in every process.
 
     It has a state, an empty one, which is how Lightning is told that it can be resumed.
     """
@@ -39,8 +47,9 @@ class StreamLoader(DataLoader[Any]):
         seen: Callable[[], int],
         workers: int = 0,
     ):
-        epoch = max(samples // batch_size, 1) * batch_size
-        sampler = StreamSampler(epoch, seen)
+        replicas, rank = processes()
+        step = batch_size * replicas
+        sampler = StreamSampler(max(samples // step, 1) * step, seen, replicas, rank)
         super().__init__(dataset, batch_size, sampler=sampler, num_workers=workers)
 
     def state_dict(self) -> dict[str, Any]:
@@ -48,3 +57,10 @@ class StreamLoader(DataLoader[Any]):
 
     def load_state_dict(self, state: dict[str, Any]) -> None:
         pass
+
+
+def processes() -> tuple[int, int]:
+    """How many processes train together, and which of them this is."""
+    if not (distributed.is_available() and distributed.is_initialized()):
+        return 1, 0
+    return distributed.get_world_size(), distributed.get_rank()

@@ -41,7 +41,7 @@ class SyntheticFaces(LightningDataModule):
 
     Args:
         size: side of the square pictures in pixels.
-        batch_size: pictures in a batch.
+        batch_size: pictures in a batch of each process.
         train_samples: pictures that are called an epoch.
         val_samples: pictures of the validation set.
         test_samples: pictures of the test set.
@@ -98,7 +98,7 @@ class SyntheticFaces(LightningDataModule):
 
 
 def seen_samples(trainer: Trainer | None, batch_size: int) -> int:
-    """Samples that training has seen, over all its epochs and interruptions."""
+    """Samples that this process has trained on, over all epochs and interruptions."""
     if trainer is None:
         return 0
     return int(trainer.global_step * trainer.accumulate_grad_batches * batch_size)

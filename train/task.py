@@ -102,8 +102,9 @@ class SkinTask(LightningModule):
     def training_step(self, batch: Batches, batch_idx: int) -> Tensor:
         _, total, parts = self._losses(batch)
         size = _size(batch)
-        self.log_dict({f"train/{name}": value for name, value in parts.items()}, batch_size=size)
-        self.log("train/loss", total, prog_bar=True, batch_size=size)
+        named = {f"train/{name}": value for name, value in parts.items()}
+        self.log_dict(named, batch_size=size, sync_dist=True)
+        self.log("train/loss", total, prog_bar=True, batch_size=size, sync_dist=True)
         return total
 
     def validation_step(self, batch: Batches, batch_idx: int) -> dict[str, Reading]:
@@ -114,11 +115,11 @@ class SkinTask(LightningModule):
 
     def _evaluate(self, batch: Batches, split: str) -> dict[str, Reading]:
         readings, total, _ = self._losses(batch)
-        self.log(f"{split}/loss", total, batch_size=_size(batch))
+        self.log(f"{split}/loss", total, batch_size=_size(batch), sync_dist=True)
         for name, part in by_name(batch).items():
             found = measure(readings[name], part)
             named = {f"{split}/{name}_{metric}": value for metric, value in found.items()}
-            self.log_dict(named, batch_size=len(part.photograph))
+            self.log_dict(named, batch_size=len(part.photograph), sync_dist=True)
         return readings
 
     def _losses(self, batch: Batches) -> tuple[dict[str, Reading], Tensor, dict[str, Tensor]]:

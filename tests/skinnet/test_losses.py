@@ -74,6 +74,40 @@ def test_white_balance_is_in_units_of_its_spread() -> None:
     assert found.item() == pytest.approx(1)
 
 
+def test_the_loss_of_a_batch_is_the_mean_of_those_of_its_halves() -> None:
+    # Then processes that share a batch have its loss between them.
+    torch.manual_seed(0)
+    photograph, made = torch.rand(2, 4, 3, 32, 32)
+    mask = torch.rand(4, 32, 32) * torch.tensor([0.0, 0.1, 0.5, 1.0])[:, None, None]
+    guess, truth = (
+        SkinMaps(*torch.rand(4, 4, 32, 32), torch.rand(4, 3, 32, 32), torch.rand(4, 32, 32))
+        for _ in range(2)
+    )
+
+    def found(part: slice) -> torch.Tensor:
+        one, other = (SkinMaps(*(value[part] for value in each)) for each in (guess, truth))
+        return torch.stack([
+            losses.appearance(made[part], photograph[part], mask[part]),
+            losses.specular_sparsity(one, mask[part]),
+            losses.shading_smoothness(one, mask[part]),
+            losses.shading_pseudo(one, photograph[part], mask[part]),
+            losses.offset_penalty(one, mask[part]),
+            losses.skin_mask(one, mask[part]),
+            losses.pigments(one, other),
+            losses.lighting(one, other),
+        ])  # fmt: skip
+
+    halves = (found(slice(0, 2)) + found(slice(2, 4))) / 2
+    torch.testing.assert_close(found(slice(0, 4)), halves)
+
+
+def test_the_skin_mask_is_a_cross_entropy_that_lets_pass_what_is_no_number() -> None:
+    guess, truth = torch.rand(2, 8, 8), torch.rand(2, 8, 8)
+    found = losses.skin_mask(maps(mask=guess), truth)
+    torch.testing.assert_close(found, torch.nn.functional.binary_cross_entropy(guess, truth))
+    assert losses.skin_mask(maps(mask=guess / 0 * 0), truth).isnan()
+
+
 def test_gradients_are_finite_at_the_edges() -> None:
     zero = torch.zeros(2, 8, 8)
     truth = maps(specular=zero)

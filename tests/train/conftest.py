@@ -45,10 +45,14 @@ def faces(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 
 @pytest.fixture
-def fit() -> Fit:
+def fit_arguments() -> Callable[..., list[str]]:
+    """The arguments of a small run of `configs/quick.yaml` in a folder."""
+    return lambda folder, *arguments: [
+        *("fit", "--config=configs/quick.yaml", f"--run={folder}", *SMALL, *arguments)
+    ]
+
+
+@pytest.fixture
+def fit(fit_arguments: Callable[..., list[str]]) -> Fit:
     """Runs `python -m train fit` on `configs/quick.yaml`, made small, in a folder."""
-
-    def run(folder: Path, *arguments: str) -> int:
-        return main(["fit", "--config=configs/quick.yaml", f"--run={folder}", *SMALL, *arguments])
-
-    return run
+    return lambda folder, *arguments: main(fit_arguments(folder, *arguments))

@@ -40,6 +40,7 @@ def data_of(path: Path, photographs: Path, faces: Path) -> tuple[str, ...]:
     nested = "--data.init_args.synthetic"
     return (
         f"--data.init_args.folder={photographs}",
+        "--data.init_args.unreadable_share=0.2",
         f"{nested}.size=16",
         f"{nested}.batch_size=2",
         f"{nested}.val_samples=2",

@@ -1,19 +1,27 @@
 """Photographs as training data."""
 
+import csv
+from functools import partial
 from pathlib import Path
 
 import numpy as np
 import pytest
+import torch
+from lightning import Trainer
 from PIL import Image
 from skimage.data import astronaut
 
+from skinnet.checkpoint import read_checkpoint
 from skinnet.errors import InputError
+from train.callbacks import LastCheckpoint, PictureGrid
+from train.cli import main
 from train.portraits import Crop, Crops, find_crops
 
 
 def test_a_face_is_found_cropped_and_masked(tmp_path: Path) -> None:
     Image.fromarray(astronaut()).save(tmp_path / "astronaut.png")
-    (crop,) = find_crops(tmp_path, 64)
+    (crop,), skipped = find_crops(tmp_path, 64)
+    assert not skipped
     assert crop.photograph.shape == (64, 64, 3) and crop.mask.shape == (64, 64)
     assert 0.08 < (crop.mask > 127).mean() < 0.6
 
@@ -24,15 +32,92 @@ def test_pictures_without_a_face_are_skipped_and_counted(
     Image.fromarray(astronaut()).save(tmp_path / "a.png")
     Image.new("RGB", (80, 80)).save(tmp_path / "black.png")
     (tmp_path / "broken.jpg").write_bytes(b"no picture")
-    assert len(find_crops(tmp_path, 32)) == 1
-    assert "1 faces, 2 pictures skipped" in capsys.readouterr().err
+    crops, skipped = find_crops(tmp_path, 32, unreadable_share=0.4)
+    assert len(crops) == 1
+    assert [each.path.name for each in skipped] == ["black.png", "broken.jpg"]
+    (said,) = capsys.readouterr().err.splitlines()
+    assert "1 faces, 2 pictures skipped" in said
+    assert "1 without a face; 1 unreadable" in said and "broken.jpg" in said
+
+
+def test_more_unreadable_pictures_than_the_share_are_refused(tmp_path: Path) -> None:
+    Image.fromarray(astronaut()).save(tmp_path / "a.png")
+    for number in range(9):
+        (tmp_path / f"broken_{number}.jpg").write_bytes(b"no picture")
+    with pytest.raises(
+        InputError, match=r"9 of 10 pictures in .* cannot be read .90%, and 80%"
+    ) as no:
+        find_crops(tmp_path, 32, unreadable_share=0.8)
+    said = str(no.value)
+    assert "broken_4.jpg and 4 more" in said and "unreadable_share" in said
+    assert len(find_crops(tmp_path, 32, unreadable_share=0.9)[1]) == 9
 
 
 def test_a_folder_without_faces_is_refused(tmp_path: Path) -> None:
-    with pytest.raises(InputError, match="holds no photograph"):
+    with pytest.raises(InputError, match=r"holds no photographs; those are files in .jpg"):
         find_crops(tmp_path, 32)
     with pytest.raises(InputError, match="not a folder"):
         find_crops(tmp_path / "absent", 32)
+    Image.new("RGB", (80, 80)).save(tmp_path / "black.png")
+    with pytest.raises(InputError, match="holds no photograph with a face"):
+        find_crops(tmp_path, 32)
+
+
+def fit(photographs: Path, run: Path, *arguments: str) -> int:
+    """Two epochs of three steps of two of seven photographs."""
+    data = (f"folder={photographs}", "size=16", "batch_size=2", "unreadable_share=0.2")
+    synthetic = ("size=16", "batch_size=2", "val_samples=2")
+    return main([
+        *("fit", "--config=configs/portraits.yaml", f"--run={run}", "--model.weights=null"),
+        *("--model.widths=[4,8]", *(f"--data.init_args.{each}" for each in data)),
+        *(f"--data.init_args.synthetic.{each}" for each in synthetic),
+        *("--trainer.precision=32-true", "--trainer.accelerator=cpu", "--trainer.max_epochs=2"),
+        *("--trainer.enable_progress_bar=false", "--trainer.log_every_n_steps=1", *arguments),
+    ])  # fmt: skip
+
+
+@pytest.fixture(scope="module")
+def photographs(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    folder = tmp_path_factory.mktemp("photographs")
+    for number in range(8):
+        face = astronaut()[:300, : 400 - number] * (1 - 0.05 * number)
+        Image.fromarray(face.astype(np.uint8)).save(folder / f"{number}.png")
+    (folder / "broken.jpg").write_bytes(b"no picture")
+    return folder
+
+
+def test_a_killed_run_goes_on_as_if_it_had_not_been(
+    photographs: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    whole, parts = tmp_path / "whole", tmp_path / "parts"
+    assert fit(photographs, whole) == 0
+    (row,) = rows(whole / "skipped.csv")
+    assert row["picture"] == str(photographs / "broken.jpg") and "picture" in row["reason"]
+
+    def kill(_: PictureGrid, trainer: Trainer, *__: object) -> None:
+        if trainer.global_step == 4:
+            raise KeyError("killed")
+
+    monkeypatch.setattr("train.cli.LastCheckpoint", partial(LastCheckpoint, seconds=0.0))
+    with monkeypatch.context() as context, pytest.raises(KeyError):
+        context.setattr(PictureGrid, "on_train_batch_start", kill)
+        fit(photographs, parts)
+    assert read_checkpoint(parts / "last.ckpt")["global_step"] == 4
+    assert fit(photographs, parts, f"--ckpt_path={parts / 'last.ckpt'}") == 0
+    (one, other) = (read_checkpoint(run / "last.ckpt")["state_dict"] for run in (whole, parts))
+    assert all(torch.equal(one[name], other[name]) for name in one)
+    assert logged(whole) == logged(parts)
+
+
+def rows(path: Path) -> list[dict[str, str]]:
+    with path.open() as file:
+        return list(csv.DictReader(file))
+
+
+def logged(run: Path) -> set[tuple[str, ...]]:
+    """Every loss of a run, with its step."""
+    found = rows(run / "metrics.csv")
+    return {tuple(row.values()) for row in found if row["metric"].startswith("train/")}
 
 
 def test_every_epoch_shows_every_photograph_once_in_its_own_order() -> None:

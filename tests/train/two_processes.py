@@ -1,0 +1,76 @@
+"""A callback for the processes of a distributed run, which a test cannot reach into."""
+
+from pathlib import Path
+
+import torch
+from lightning import Callback, LightningModule, Trainer
+from torch import Tensor, distributed, nn
+
+from train.synthetic import Scenes
+
+
+class _Sum(torch.autograd.Function):
+    """Sum over all processes; so is its gradient."""
+
+    @staticmethod
+    def forward(ctx: object, value: Tensor) -> Tensor:
+        value = value.clone()
+        distributed.all_reduce(value)
+        return value
+
+    @staticmethod
+    def backward(ctx: object, slope: Tensor) -> Tensor:
+        return _Sum.forward(ctx, slope)
+
+
+class SharedBatchNorm(nn.BatchNorm2d):
+    """Batch statistics over all processes, as `--trainer.sync_batchnorm true` has them on GPUs.
+
+    torch's SyncBatchNorm refuses tensors on a CPU.
+    """
+
+    def forward(self, x: Tensor) -> Tensor:
+        if not self.training:
+            return super().forward(x)
+        count = distributed.get_world_size()
+        moments = torch.stack([x.mean((0, 2, 3)), (x**2).mean((0, 2, 3))])
+        mean, square = _Sum.apply(moments) / count
+        variance = square - mean**2
+        samples = count * x.numel() / x.shape[1]
+        with torch.no_grad():
+            self.running_mean.lerp_(mean, self.momentum)
+            self.running_var.lerp_(variance * samples / (samples - 1), self.momentum)
+        scale = self.weight * (variance + self.eps).rsqrt()
+        return (x - mean[:, None, None]) * scale[:, None, None] + self.bias[:, None, None]
+
+
+class Witness(Callback):
+    """Notes the training samples that each process draws, in `folder`/RANK.txt.
+
+    Args:
+        folder: of the notes.
+        break_at: the step from which the process of rank 1 has photographs that are no numbers.
+    """
+
+    def __init__(self, folder: str, break_at: int | None = None):
+        self.folder, self.break_at = Path(folder), break_at
+
+    def setup(self, trainer: Trainer, pl_module: LightningModule, stage: str) -> None:
+        for module in pl_module.modules():
+            if type(module) is nn.BatchNorm2d:
+                module.__class__ = SharedBatchNorm
+        drawn, notes = Scenes.__getitem__, self.folder / f"{trainer.global_rank}.txt"
+
+        def noted(scenes: Scenes, index: int) -> object:
+            if scenes.key[1] == 0:
+                with notes.open("a") as file:
+                    file.write(f"{index}\n")
+            return drawn(scenes, index)
+
+        Scenes.__getitem__ = noted  # type: ignore[method-assign]
+
+    def on_train_batch_start(
+        self, trainer: Trainer, pl_module: LightningModule, batch: object, batch_idx: int
+    ) -> None:
+        if trainer.global_rank == 1 and trainer.global_step == self.break_at:
+            batch.photograph.fill_(float("nan"))  # type: ignore[attr-defined]
