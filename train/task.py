@@ -27,11 +27,12 @@ Batches = Batch | dict[str, Batch]
 
 @dataclass
 class LossWeights:
-    """Weight of each loss; those that need truth count on synthetic portraits only."""
+    """Weight of each loss. The first four count on every picture, pigments, lighting and white
+    balance where there is truth, and the priors, which stand in for it, where there is none."""
 
     appearance: NonNegativeFloat = 4.0
     elsewhere: NonNegativeFloat = 0.2
-    mask: NonNegativeFloat = 0.3
+    mask: NonNegativeFloat = 0.6
     offset: NonNegativeFloat = 2.0
     camera: NonNegativeFloat = 0.005
     specular: NonNegativeFloat = 0.01
@@ -160,7 +161,7 @@ def _size(batch: Batches) -> int:
 
 
 def terms(reading: Reading, batch: Batch) -> dict[str, Tensor]:
-    """Every loss that this batch allows, by its name in `LossWeights`."""
+    """Every loss that counts on this batch, by its name in `LossWeights`."""
     linear = rgb_to_linear_rgb(batch.photograph)
     maps, mask = reading.maps, batch.mask
     parts = {
@@ -168,16 +169,19 @@ def terms(reading: Reading, batch: Batch) -> dict[str, Tensor]:
         "elsewhere": losses.appearance(reading.reconstruction, linear, 1 - mask),
         "mask": losses.skin_mask(maps, mask),
         "offset": losses.offset_penalty(maps, mask),
+    }
+    if batch.truth is not None and batch.capture is not None:
+        return parts | {
+            "pigments": losses.pigments(maps, batch.truth),
+            "lighting": losses.lighting(maps, batch.truth),
+            "white_balance": losses.white_balance(reading.capture, batch.capture),
+        }
+    return parts | {
         "camera": losses.camera_prior(reading.capture),
         "specular": losses.specular_sparsity(maps, mask),
         "smoothness": losses.shading_smoothness(maps, mask),
         "shading": losses.shading_pseudo(maps, linear, mask),
     }
-    if batch.truth is not None and batch.capture is not None:
-        parts["pigments"] = losses.pigments(maps, batch.truth)
-        parts["lighting"] = losses.lighting(maps, batch.truth)
-        parts["white_balance"] = losses.white_balance(reading.capture, batch.capture)
-    return parts
 
 
 def one_cycle(step: int, warmup: int, steps: int) -> float:
