@@ -18,8 +18,12 @@ from train.synthetic import seen_samples
 from train.twin.cache import geometry
 from train.twin.lot import draw_lot
 from train.twin.picture import render
+from train.twin.views import Buffers
 
 SPLITS = {"train": 0, "val": 1, "test": 2}
+STAGES = {"fit": ("train", "val"), "validate": ("val",), "test": ("test",)}
+"""Splits whose heads a stage of training needs."""
+
 Drawn = dict[str, NDArray[Any]]
 
 
@@ -51,7 +55,7 @@ class TwinFaces(LightningDataModule):
 
     Args:
         size: side of the square pictures in pixels.
-        batch_size: pictures in a batch.
+        batch_size: pictures in a batch of each process.
         heads: heads of the training set.
         val_heads: heads of the validation set.
         test_heads: heads of the test set.
@@ -94,15 +98,22 @@ class TwinFaces(LightningDataModule):
         kind = "procedural heads" if self.ict is None else "ICT-FaceKit and procedural heads"
         return f"{self.heads['train']} {kind} of skinnet's twin, seed {self.seed}, {self.size} px"
 
+    def prepare_data(self) -> None:
+        """Cast the heads that are missing; of several processes on a machine, one does."""
+        assert self.trainer is not None and self.trainer.state.fn is not None
+        for split in STAGES[self.trainer.state.fn.value]:
+            self._cast(split)
+
     def setup(self, stage: str) -> None:
-        """Build or read the heads that a stage needs: fit, validate or test."""
-        for split in {"fit": ("train", "val"), "validate": ("val",)}.get(stage, (stage,)):
+        """Read the heads that a stage needs, or cast them: fit, validate or test."""
+        for split in STAGES[stage]:
             if split not in self.buffers:
-                cast = geometry(
-                    self.geometry, self.size, self.heads[split], split, self.seed, self.ict
-                )
+                cast = self._cast(split)
                 # Torch counts with signed integers; the bits are the same.
                 self.buffers[split] = cast._replace(seen=cast.seen.view(np.int64))._asdict()
+
+    def _cast(self, split: str) -> Buffers:
+        return geometry(self.geometry, self.size, self.heads[split], split, self.seed, self.ict)
 
     def train_dataloader(self) -> StreamLoader:
         return self.stream(self.samples["train"] // self.batch_size, self.trainer)
