@@ -86,6 +86,13 @@ def test_an_earlier_run_is_kept_aside(fit: Fit, tmp_path: Path) -> None:
     assert (tmp_path / "run.1" / "last.ckpt").read_bytes() == b"precious"
 
 
+def test_configured_callbacks_run_beside_our_own(fit: Fit, tmp_path: Path) -> None:
+    stop = "--trainer.callbacks.init_args"
+    own = ("--trainer.callbacks+=EarlyStopping", f"{stop}.monitor=val/loss")
+    assert fit(tmp_path, *own, f"{stop}.divergence_threshold=0", "--trainer.max_epochs=3") == 0
+    assert max(losses(tmp_path)) == 3  # the first epoch's last step
+
+
 def test_a_missing_checkpoint_is_an_error(
     fit: Fit, tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
