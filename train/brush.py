@@ -1,10 +1,10 @@
-"""Small steps shared by what paints a synthetic portrait."""
+"""Small steps shared by what paints the twin's pictures."""
 
 from torch import Tensor
 
 
 def column(value: Tensor) -> Tensor:
-    """A number per scene as [batch, 1, 1, 1]."""
+    """A number per picture as [batch, 1, 1, 1]."""
     return value[:, None, None, None]
 
 

@@ -25,11 +25,10 @@ from train.fitted import FittedFaces
 from train.guards import FiniteGuard
 from train.logs import CurveLogger
 from train.portraits import Portraits
-from train.synthetic import SyntheticFaces
 from train.task import SkinTask
 from train.twin.faces import TwinFaces
 
-__all__ = ["FittedFaces", "Portraits", "SkinCLI", "SyntheticFaces", "TwinFaces", "main"]
+__all__ = ["FittedFaces", "Portraits", "SkinCLI", "TwinFaces", "main"]
 
 
 class SentenceParser(LightningArgumentParser):
@@ -120,7 +119,7 @@ _NOISE = (
     "LightningCLI's args parameter is intended",  # the tests' way in
     r"(?s)\s*.*was deprecated in v4",  # Lightning uses it
     r"\s*By default only one JsonargparseDeprecationWarning",
-    "The '.*_dataloader' does not have many workers",  # drawing scenes is a small part of a step
+    "The '.*_dataloader' does not have many workers",  # drawing pictures is a small part of a step
     r"`isinstance.treespec, LeafSpec.` is deprecated",
     "Precision bf16-mixed is not supported by the model summary",
     "Checkpoint directory .* exists and is not empty",  # the run folder, on purpose

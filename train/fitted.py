@@ -16,66 +16,69 @@ from torch.utils.data import DataLoader, Dataset
 from skinnet.appearance.hybrid import HybridModel
 from skinnet.appearance.mapsfile import load_maps
 from skinnet.appearance.subjects import SkinTexture
-from skinnet.autoencoder import F_BLOOD_MAX, F_MEL_MAX, SHADING_MAX, SkinMaps
-from skinnet.capture import Capture
+from skinnet.autoencoder import F_BLOOD_MAX, F_MEL_MAX
 from skinnet.decoder import SkinDecoder
 from skinnet.errors import InputError
 from skinnet.render.camera import front
-from skinnet.render.scene import Scene as Rays
+from skinnet.render.scene import Scene
 from skinnet.render.visibility import geometry
 from skinnet.shape.meshfile import read_mesh
 from train.batch import Batch
-from train.brush import column
-from train.render import photographed, shaded
-from train.scene import Scene, draw_conditions
-from train.stream import StreamLoader
-from train.synthetic import seen_samples
+from train.stream import StreamLoader, seen_samples
+from train.twin.cache import SPLITS
+from train.twin.camera import pictured
+from train.twin.faces import Drawn
+from train.twin.light import shade
+from train.twin.lot import draw_camera, draw_gloss, draw_light
+from train.twin.picture import Skin, developed, normals, openness
+from train.twin.views import facing
 
-_SPLITS = {"train": 0, "val": 1, "test": 2}
 MAPS = "_maps.npz"
 TURN, TILT, FIELD = 25.0, 8.0, 24.0
 """Standard deviations of the camera's turn and tilt, and its angle of view, in degrees."""
 
+OIL = 1.0
+"""Oil on a face, even all over it, relative to the twin's."""
+
 
 class View(NamedTuple):
-    """What a camera sees of one face, [size, size, ...]: where, facing where, how open to the sky.
+    """What a camera sees of one face, [size, size, ...]: `hit` is 1 where there is any of it, `uv`
+    as `grid_sample` counts it, and the rest as in `train.twin.views.Buffers`."""
 
-    `uv` is as `grid_sample` counts it, `normal` in the camera's axes, `hit` the share of a pixel.
-    """
-
-    uv: NDArray[np.float32]
-    normal: NDArray[np.float32]
-    open: NDArray[np.float32]
     hit: NDArray[np.float32]
+    uv: NDArray[np.float32]
+    normal: NDArray[np.int8]
+    openness: NDArray[np.uint8]
+    seen: NDArray[np.int64]
 
 
-class FittedScenes(Dataset[Scene]):
+class FittedLots(Dataset[Drawn]):
     """Faces, cameras, lights and skins drawn from (seed, split, index)."""
 
     def __init__(self, faces: "FittedFaces", split: str, samples: int):
         self.faces, self.samples = faces, samples
-        self.key = (faces.seed, _SPLITS[split])
+        self.key = (faces.seed, SPLITS[split])
 
     def __len__(self) -> int:
         return self.samples
 
-    def __getitem__(self, index: int) -> Scene:
+    def __getitem__(self, index: int) -> Drawn:
         draw = np.random.default_rng([*self.key, index])
         view = int(draw.integers(len(self.faces.views)))
         skin, mask = self.faces.skin(view // self.faces.shots, draw)
-        seen = self.faces.views[view]
-        scene = draw_conditions(draw, self.faces.size) | {"skin": skin, "known": mask[None]}
         wall = draw.uniform(0.02, 0.9) * np.exp(draw.normal(0, 0.1, 3))
-        scene |= {**seen._asdict(), "wall": wall.clip(0.005, 1)}
-        return {name: np.asarray(value, np.float32) for name, value in scene.items()}
+        lot = {"skin": skin, "known": mask[None], "wall": wall.clip(0.005, 1)}
+        lot |= draw_gloss(draw) | draw_light(draw) | draw_camera(draw, self.faces.size)
+        drawn = {name: np.asarray(value, np.float32) for name, value in lot.items()}
+        return self.faces.views[view]._asdict() | drawn
 
 
 class FittedFaces(LightningDataModule):
     """Scans fitted by `skinnet maps`, seen from many sides in many lights, with their true maps.
 
-    Every face is rendered once from `shots` sides by ray casting; lights, cameras and exposure are
-    drawn fresh on every step and rendered on the device that trains. Lamps cast no shadows; hollows
-    are dimmed by the share of the sky that they see.
+    Every face is ray-cast once from `shots` sides; lights, cameras and exposure are those of
+    `TwinFaces`, drawn afresh on every step and rendered on the device that trains. Faces throw
+    shadows on themselves, and hollows see less of the sky.
 
     Args:
         folder: of NAME_maps.npz with NAME_face.obj, as `skinnet maps` writes them.
@@ -152,17 +155,19 @@ class FittedFaces(LightningDataModule):
     def train_dataloader(self) -> StreamLoader:
         samples = self.samples["train"]
         seen = partial(seen_samples, self.trainer, self.batch_size)
-        return StreamLoader(FittedScenes(self, "train", samples), self.batch_size, samples, seen)
+        return StreamLoader(FittedLots(self, "train", samples), self.batch_size, samples, seen)
 
-    def val_dataloader(self) -> DataLoader[Scene]:
-        return DataLoader(FittedScenes(self, "val", self.samples["val"]), self.batch_size)
+    def val_dataloader(self) -> DataLoader[Drawn]:
+        return DataLoader(FittedLots(self, "val", self.samples["val"]), self.batch_size)
 
-    def test_dataloader(self) -> DataLoader[Scene]:
-        return DataLoader(FittedScenes(self, "test", self.samples["val"]), self.batch_size)
+    def test_dataloader(self) -> DataLoader[Drawn]:
+        return DataLoader(FittedLots(self, "test", self.samples["val"]), self.batch_size)
 
     def on_after_batch_transfer(self, batch: Any, dataloader_idx: int) -> Batch:
-        scenes: dict[str, Tensor] = batch
-        return render_fitted(scenes, self.decoder.to(scenes["uv"].device))
+        lot: dict[str, Tensor] = batch
+        testing = self.trainer is not None and self.trainer.testing
+        decoder = self.decoder.to(lot["uv"].device)
+        return render_fitted(lot, decoder, "test" if testing else "train")
 
 
 def shrunk(texture: SkinTexture, texels: int) -> tuple[NDArray[np.float32], NDArray[np.float32]]:
@@ -176,47 +181,44 @@ def shrunk(texture: SkinTexture, texels: int) -> tuple[NDArray[np.float32], NDAr
 
 def shots(mesh: Path, count: int, size: int, draw: np.random.Generator) -> list[View]:
     """A textured face from some sides, the first from ahead."""
-    rays = Rays(read_mesh(mesh))
+    scene = Scene(read_mesh(mesh))
     angles = draw.normal(0, (TURN, TILT), (count, 2)).clip((-60, -20), (60, 20))
     angles[0] = 0
-    return [_shot(rays, size, *one) for one in angles]
+    return [_shot(scene, size, *one) for one in angles]
 
 
-def _shot(rays: Rays, size: int, turn: float, tilt: float) -> View:
-    view = front(rays.mesh.vertices, (size, size), float(turn), float(tilt), FIELD)
-    seen = geometry(rays, view)
-    assert seen.uv is not None  # NAME_face.obj has texture coordinates
-    outward = seen.side[:, 0] > 0
-    planes = np.zeros((size, size, 7), np.float32)
-    place = np.column_stack([2 * seen.uv[:, 0] - 1, 1 - 2 * seen.uv[:, 1]])
-    normal = seen.normal @ view.rotation.T
-    planes[seen.hit] = np.column_stack([place, normal, seen.openness(), outward])
-    return View(planes[..., :2], planes[..., 2:5], planes[..., 5], planes[..., 6])
+def _shot(scene: Scene, size: int, turn: float, tilt: float) -> View:
+    camera = front(scene.mesh.vertices, (size, size), float(turn), float(tilt), FIELD)
+    found = geometry(scene, camera)
+    assert found.uv is not None  # NAME_face.obj has texture coordinates
+    view = View(
+        np.zeros((size, size), np.float32),
+        np.zeros((size, size, 2), np.float32),
+        np.zeros((size, size, 3), np.int8),
+        np.zeros((size, size), np.uint8),
+        np.full((size, size), -1, np.int64),
+    )
+    at = found.hit
+    view.hit[at] = found.side[:, 0] > 0
+    view.uv[at] = np.column_stack([2 * found.uv[:, 0] - 1, 1 - 2 * found.uv[:, 1]])
+    view.normal[at], view.openness[at], seen = facing(found, camera.rotation)
+    view.seen[at] = seen.view(np.int64)
+    return view
 
 
 @torch.no_grad()
-def render_fitted(scene: dict[str, Tensor], decoder: SkinDecoder) -> Batch:
-    """Photographs of a batch of drawn scenes with their truth, as `train.render.render` gives."""
-    over = F.grid_sample(
-        torch.cat([scene["skin"], scene["known"]], 1), scene["uv"], align_corners=False
-    )
+def render_fitted(lot: dict[str, Tensor], decoder: SkinDecoder, split: str = "train") -> Batch:
+    """Photographs of a batch of lots with their truth, as `train.twin.picture.render` gives."""
+    over = F.grid_sample(torch.cat([lot["skin"], lot["known"]], 1), lot["uv"], align_corners=False)
     blood, melanin, offset, known = over.split([1, 1, 3, 1], 1)
-    hit = scene["hit"][:, None]
+    melanin, blood = melanin[:, 0].clamp(0, F_MEL_MAX), blood[:, 0].clamp(0, F_BLOOD_MAX)
+    hit = lot["hit"][:, None]
     share = hit * (known > 0.5)
-    normal = scene["normal"].movedim(-1, 1)
-    oil = torch.full_like(share, 0.5)
-    shading, specular = shaded(scene, normal, oil, scene["open"][:, None])
+    lit = shade(lot, normals(lot), openness(lot), lot["seen"], torch.full_like(share, OIL))
+    matrix, capture = pictured(lot, decoder.camera, split)
+    white = matrix.sum(-2)[:, :, None, None]
     # Eyes and mouth are holes or unknown; the wall is lit evenly.
-    other = column(scene["wall_light"]) * scene["wall"][:, :, None, None] * (1 - hit)
-    other = other + hit * 0.05 * shading
-    truth = SkinMaps(
-        melanin[:, 0].clamp(0, F_MEL_MAX),
-        blood[:, 0].clamp(0, F_BLOOD_MAX),
-        (share * shading)[:, 0].clamp_max(SHADING_MAX),
-        (share * specular)[:, 0].clamp_max(1),
-        (share * shading * offset + (1 - share) * other).clamp(-1, 1),
-        share[:, 0],
-    )
-    capture = Capture(*(scene[name] for name in Capture._fields))
-    linear = decoder.compose(*truth[:5], capture)
-    return Batch(photographed(scene, linear), truth.mask, truth, capture)
+    other = white * (lot["wall"][:, :, None, None] * (1 - hit) + hit * 0.05 * lit.diffuse)
+    skin = Skin(melanin, blood, decoder.skin(melanin, blood, matrix), share, lit)
+    rest = share * lit.diffuse * offset + (1 - share) * other
+    return developed(lot, skin, rest, white, capture)

@@ -17,14 +17,17 @@ from torch.utils.data import DataLoader, Dataset
 from skinnet.errors import InputError
 from skinnet.faces import crop_box, find_face, resize, skin_mask
 from skinnet.files import write_text
-from skinnet.images import read_photo
+from skinnet.images import linear_to_srgb, read_photo, srgb_to_linear, to_uint8
 from train.batch import Batch
 from train.guards import listed
-from train.stream import StreamLoader
-from train.synthetic import SyntheticFaces, seen_samples
+from train.stream import StreamLoader, seen_samples
+from train.twin.faces import Drawn, TwinFaces
 
 SUFFIXES = (".jpg", ".jpeg", ".png", ".tif", ".tiff", ".webp")
 Share = restricted_number_type("Share", float, [(">=", 0), ("<", 1)])
+
+EXPOSURE_SD, WHITE_BALANCE_SD = 0.25, 0.02
+"""How much photographs vary in training, in logarithms: all of it, and red and blue to green."""
 
 
 class Crop(NamedTuple):
@@ -35,8 +38,8 @@ class Crop(NamedTuple):
 
 
 class Crops(Dataset[Crop]):
-    """Crops in an endless stream: every epoch has all of them, shuffled and mirrored by its own
-    number and the seed."""
+    """Crops in an endless stream: every epoch has all of them, shuffled, mirrored, and brighter or
+    darker, warmer or colder, by its own number and the seed."""
 
     def __init__(self, crops: list[Crop], seed: int):
         self.crops = crops
@@ -51,15 +54,25 @@ class Crops(Dataset[Crop]):
         order = lot.permutation(len(self.crops))
         mirrored = lot.random(len(self.crops)) < 0.5
         crop = self.crops[order[place]]
-        return Crop(*(part[:, ::-1].copy() for part in crop)) if mirrored[place] else crop
+        crop = Crop(*(part[:, ::-1].copy() for part in crop)) if mirrored[place] else crop
+        return varied(crop, np.random.default_rng([self.seed, epoch, place]))
+
+
+def varied(crop: Crop, draw: np.random.Generator) -> Crop:
+    """The crop under another exposure, which clips as a camera does, and white balance."""
+    red, blue = draw.normal(0, WHITE_BALANCE_SD, 2)
+    gain = np.exp(draw.normal(0, EXPOSURE_SD) + np.array([red, 0, blue]))
+    levels = srgb_to_linear(np.arange(256, dtype=np.uint8))
+    table = to_uint8(linear_to_srgb(levels[:, None] * gain))
+    return crop._replace(photograph=table[crop.photograph, np.arange(3)])
 
 
 class Portraits(LightningDataModule):
     """Photographs of faces, found, cropped and masked by `skinnet.faces`.
 
     Unreadable pictures and pictures without a face are skipped, counted, and listed in
-    `skipped.csv` of the run. Every step also sees a batch of `synthetic`, so that the maps keep
-    their meaning.
+    `skipped.csv` of the run. Every step also sees a batch of `twin`, so that the maps keep their
+    meaning. Photographs vary in exposure and white balance while training, and only then.
 
     Args:
         folder: of the photographs, searched with its subfolders.
@@ -68,8 +81,8 @@ class Portraits(LightningDataModule):
         val_share: share of the photographs that is kept for validation.
         unreadable_share: share of the pictures that may be unreadable; with more, training does not
             start.
-        seed: of the order, the mirroring and the choice of validation photographs.
-        synthetic: synthetic faces of the same size to train on beside the photographs.
+        seed: of the order, the variation and the choice of validation photographs.
+        twin: heads of the same size with all ground truth, to train on beside the photographs.
     """
 
     def __init__(
@@ -80,7 +93,7 @@ class Portraits(LightningDataModule):
         val_share: Share = 0.1,  # type: ignore[valid-type]
         unreadable_share: Share = 0.1,  # type: ignore[valid-type]
         seed: NonNegativeInt = 0,
-        synthetic: SyntheticFaces | None = None,
+        twin: TwinFaces | None = None,
     ):
         super().__init__()
         self.folder = Path(folder)
@@ -89,17 +102,28 @@ class Portraits(LightningDataModule):
         self.val_share = val_share
         self.unreadable_share = unreadable_share
         self.seed = seed
-        self.synthetic = synthetic or SyntheticFaces(size=size, batch_size=batch_size)
-        self.crops: dict[str, Crops] = {}
+        self.twin = twin or TwinFaces(size=size, batch_size=batch_size)
+        self.crops: dict[str, list[Crop]] = {}
 
     @property
     def described(self) -> str:
         """What a model card says of these data."""
-        return f"{len(self.crops['train'])} photographs and {self.synthetic.described}"
+        return f"{len(self.crops['train'])} photographs and {self.twin.described}"
+
+    def prepare_data(self) -> None:
+        """Cast the heads of the twin that are missing, once there are photographs at all."""
+        find_pictures(self.folder)
+        self.twin.trainer = self.trainer
+        self.twin.prepare_data()
 
     def setup(self, stage: str) -> None:
-        if self.crops:
-            return
+        """Find the faces, and read the heads of the twin that a stage needs."""
+        if not self.crops:
+            self._find()
+        self.twin.trainer = self.trainer
+        self.twin.setup(stage)
+
+    def _find(self) -> None:
         crops, skipped = find_crops(self.folder, self.size, self.unreadable_share)
         if self.trainer is not None and self.trainer.is_global_zero:
             write_skipped(skipped, Path(self.trainer.default_root_dir) / "skipped.csv")
@@ -108,32 +132,35 @@ class Portraits(LightningDataModule):
         if len(crops) <= kept:
             raise InputError(f"{self.folder} has {len(crops)} usable photographs; two are needed.")
         self.crops = {
-            "val": Crops([crops[index] for index in order[:kept]], self.seed),
-            "train": Crops([crops[index] for index in order[kept:]], self.seed),
+            "val": [crops[index] for index in order[:kept]],
+            "train": [crops[index] for index in order[kept:]],
         }
 
     def train_dataloader(self) -> CombinedLoader:
-        crops = self.crops["train"]
+        crops = Crops(self.crops["train"], self.seed)
         steps = max(len(crops) // self.batch_size, 1)
         seen = partial(seen_samples, self.trainer, self.batch_size)
         loaders = {
             "portraits": StreamLoader(crops, self.batch_size, steps * self.batch_size, seen),
-            "synthetic": self.synthetic.stream(steps, self.trainer),
+            "twin": self.twin.stream(steps, self.trainer),
         }
         return CombinedLoader(loaders, "min_size")
 
     def val_dataloader(self) -> CombinedLoader:
-        portraits: DataLoader[Crop] = DataLoader(self.crops["val"], self.batch_size)
-        loaders = {"portraits": portraits, "synthetic": self.synthetic.val_dataloader()}
-        return CombinedLoader(loaders, "min_size")
+        return self._fixed(self.twin.val_dataloader())
 
     def test_dataloader(self) -> CombinedLoader:
-        return self.val_dataloader()
+        return self._fixed(self.twin.test_dataloader())
+
+    def _fixed(self, twin: DataLoader[Drawn]) -> CombinedLoader:
+        """The photographs kept for validation, as they are, beside pictures of the twin."""
+        portraits: DataLoader[Crop] = DataLoader(self.crops["val"], self.batch_size)  # type: ignore[arg-type]
+        return CombinedLoader({"portraits": portraits, "twin": twin}, "min_size")
 
     def on_after_batch_transfer(self, batch: Any, dataloader_idx: int) -> dict[str, Batch]:
         photograph, mask = (part.float() / 255 for part in batch["portraits"])
-        synthetic = self.synthetic.on_after_batch_transfer(batch["synthetic"], dataloader_idx)
-        return {"portraits": Batch(photograph.movedim(-1, 1), mask), "synthetic": synthetic}
+        twin = self.twin.on_after_batch_transfer(batch["twin"], dataloader_idx)
+        return {"portraits": Batch(photograph.movedim(-1, 1), mask), "twin": twin}
 
 
 class Skipped(NamedTuple):

@@ -3,6 +3,7 @@
 from collections.abc import Callable, Iterator
 from typing import Any
 
+from lightning import Trainer
 from torch import distributed
 from torch.utils.data import DataLoader, Dataset
 from torch.utils.data.distributed import DistributedSampler
@@ -57,6 +58,13 @@ class StreamLoader(DataLoader[Any]):
 
     def load_state_dict(self, state: dict[str, Any]) -> None:
         pass
+
+
+def seen_samples(trainer: Trainer | None, batch_size: int) -> int:
+    """Samples that this process has trained on, over all epochs and interruptions."""
+    if trainer is None:
+        return 0
+    return int(trainer.global_step * trainer.accumulate_grad_batches * batch_size)
 
 
 def processes() -> tuple[int, int]:

@@ -153,7 +153,7 @@ class SkinTask(LightningModule):
 
 def by_name(batch: Batches) -> dict[str, Batch]:
     """The batches of a step by the kind of their data."""
-    return batch if isinstance(batch, dict) else {"synthetic": batch}
+    return batch if isinstance(batch, dict) else {"twin": batch}
 
 
 def _size(batch: Batches) -> int:

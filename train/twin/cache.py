@@ -52,14 +52,14 @@ def geometry(
     Each lies in `folder` in a file of its own, so that a build that was cut short goes on where it
     was. With the file `ict` of ICT-FaceKit most heads are of it, otherwise all are procedural.
     """
-    if ict is None:
-        _say("Without the file of ICT-FaceKit all heads are procedural.\n")
     settings = Settings(size, seed, "procedural" if ict is None else _fingerprint(ict), VERSION)
     place = folder / settings.key
     place.mkdir(parents=True, exist_ok=True)
     stack = _empty(count, size)
     missing = [i for i in range(count) if not _fill(stack, i, _file(place, split, i), settings)]
     jobs = [(place, settings, split, index, ict) for index in missing]
+    if jobs and ict is None:
+        _say("Without the file of ICT-FaceKit all heads are procedural.\n")
     for done, index in enumerate(_built(jobs, workers), 1):
         _say(f"\rHeads of {split}: {done:,} of {len(jobs):,} cast.")
         assert _fill(stack, index, _file(place, split, index), settings)

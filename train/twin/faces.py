@@ -13,14 +13,12 @@ from torch.utils.data import DataLoader, Dataset
 
 from skinnet.decoder import SkinDecoder
 from train.batch import Batch
-from train.stream import StreamLoader
-from train.synthetic import seen_samples
-from train.twin.cache import geometry
+from train.stream import StreamLoader, seen_samples
+from train.twin.cache import SPLITS, geometry
 from train.twin.lot import draw_lot
 from train.twin.picture import render
 from train.twin.views import Buffers
 
-SPLITS = {"train": 0, "val": 1, "test": 2}
 STAGES = {"fit": ("train", "val"), "validate": ("val",), "test": ("test",)}
 """Splits whose heads a stage of training needs."""
 

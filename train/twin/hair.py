@@ -37,7 +37,7 @@ def draw_cut(draw: np.random.Generator) -> Cut:
 
 
 def scalp(cut: Cut, azimuth: Points, elevation: Points) -> Points:
-    """Radians from the hairline, positive where hair grows; as `train.texture` paints it."""
+    """Radians from the hairline, positive where hair grows."""
     side = np.abs(azimuth)
     line = cut.hairline - 0.25 * side**2
     low = 0.34 + 0.1 * np.cos(3 * azimuth + cut.parting)

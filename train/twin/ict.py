@@ -162,7 +162,7 @@ def _neck(skin: Part) -> Neck:
 
 
 # Landmarks of the mean (numbers of iBUG's 68 on the face's left, or several whose middle is meant)
-# and where `train.texture` paints them: azimuth, elevation.
+# and where `train.twin.paint` paints them: azimuth, elevation.
 PLACES: tuple[tuple[tuple[int, ...], tuple[float, float]], ...] = (
     ((42,), (0.205, 0.012)), ((45,), (0.475, 0.028)), ((43,), (0.295, 0.060)),
     ((44,), (0.385, 0.062)), ((46,), (0.385, -0.018)), ((47,), (0.295, -0.018)),

@@ -48,9 +48,13 @@ def _skin(rng: np.random.Generator, melanin: float) -> dict[str, object]:
         "melanin_fine": rng.normal(0, rng.uniform(0.01, 0.07), (1, 84, 104)),
         "blood_fine": rng.normal(0, rng.uniform(0.01, 0.07), (1, 84, 104)),
         "bump": rng.uniform(0.01, 0.07) * rng.standard_normal((2, *CHART), np.float32),
-        "oil": np.exp(rng.normal(-0.1, 0.4)),
-        "roughness": rng.uniform(0.32, 0.65),
+        **draw_gloss(rng),
     }
+
+
+def draw_gloss(rng: np.random.Generator) -> dict[str, object]:
+    """How much oil lies on the skin, and the roughness of its lobe."""
+    return {"oil": np.exp(rng.normal(-0.1, 0.4)), "roughness": rng.uniform(0.32, 0.65)}
 
 
 def _marks(rng: np.random.Generator) -> dict[str, object]:

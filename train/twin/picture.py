@@ -9,13 +9,14 @@ from kornia.color import rgb_to_grayscale
 from torch import Tensor
 
 from skinnet.autoencoder import SHADING_MAX, SkinMaps
+from skinnet.capture import Capture
 from skinnet.decoder import SkinDecoder
 from skinnet.shape.procedural import CHART, unit
 from train.batch import Batch
 from train.brush import column, soft_step
 from train.twin.camera import photographed, pictured
 from train.twin.labels import CLOTH, EYE, GLASSES, HAIR, MOUTH, SKIN, TEETH
-from train.twin.light import shade
+from train.twin.light import Shade, shade
 from train.twin.paint import Paint, enlarged, paint_skin
 
 METERED = 0.25
@@ -34,6 +35,16 @@ class Ground(NamedTuple):
     openness: Map
 
 
+class Skin(NamedTuple):
+    """Skin in a batch of pictures: pigments, colour, its share of each pixel, and its light."""
+
+    melanin: Float[Tensor, "batch height width"]
+    hemoglobin: Float[Tensor, "batch height width"]
+    albedo: Image
+    share: Map
+    lit: Shade
+
+
 @torch.no_grad()
 def render(lot: dict[str, Tensor], decoder: SkinDecoder, split: str = "train") -> Batch:
     """Photographs of a batch of lots, each with the buffers of a head, and their truth.
@@ -49,22 +60,31 @@ def render(lot: dict[str, Tensor], decoder: SkinDecoder, split: str = "train") -
     oil = torch.where(skin > 0, over.oil, _GLOSS.to(skin)[ground.label.long()])
     lit = shade(lot, normal, ground.openness, lot["seen"], oil)
     matrix, capture = pictured(lot, decoder.camera, split)
-    melanin, hemoglobin = over.melanin[:, 0], over.hemoglobin[:, 0]
-    albedo = decoder.skin(melanin, hemoglobin, matrix)
     white = matrix.sum(-2)[:, :, None, None]
+    melanin, hemoglobin = over.melanin[:, 0], over.hemoglobin[:, 0]
     other = _other(lot, ground, over) * torch.where(ground.label > 0, lit.diffuse, 1.0)
     other = (other + lit.specular * (ground.label > 0)) * white
-    linear = share * (albedo * lit.diffuse + lit.specular * white) + (1 - share) * other
-    gain = _exposed(lot, linear, share)
+    albedo = decoder.skin(melanin, hemoglobin, matrix)
+    face = Skin(melanin, hemoglobin, albedo, share, lit)
+    return developed(lot, face, (1 - share) * other, white, capture)
+
+
+def developed(
+    lot: dict[str, Tensor], skin: Skin, rest: Image, white: Image, capture: Capture
+) -> Batch:
+    """Photographs of skin and of the linear light `rest` beside it, and their truth."""
+    diffuse, specular = skin.lit
+    linear = skin.share * (skin.albedo * diffuse + specular * white) + rest
+    gain = _exposed(lot, linear, skin.share)
     truth = SkinMaps(
-        melanin,
-        hemoglobin,
-        (gain * share * lit.diffuse)[:, 0].clamp_max(SHADING_MAX),
-        (gain * share * lit.specular)[:, 0].clamp_max(1),
-        (gain * (1 - share) * other).clamp(0, 1),
-        share[:, 0],
+        skin.melanin,
+        skin.hemoglobin,
+        (gain * skin.share * diffuse)[:, 0].clamp_max(SHADING_MAX),
+        (gain * skin.share * specular)[:, 0].clamp_max(1),
+        (gain * rest).clamp(-1, 1),
+        skin.share[:, 0],
     )
-    batch = Batch(photographed(lot, gain * linear), truth.mask, truth, capture, albedo)
+    batch = Batch(photographed(lot, gain * linear), truth.mask, truth, capture, skin.albedo)
     return _flipped(batch, lot["flip"] > 0)
 
 
@@ -73,12 +93,18 @@ _GLOSS[EYE], _GLOSS[TEETH], _GLOSS[MOUTH], _GLOSS[GLASSES], _GLOSS[HAIR] = 1.5, 
 
 
 def _ground(lot: dict[str, Tensor]) -> Ground:
-    return Ground(
-        lot["label"][:, None].float(),
-        unit(lot["normal"].movedim(-1, 1).float() + 1e-3),
-        lot["chart"].movedim(-1, 1).float(),
-        lot["openness"][:, None].float() / 255,
-    )
+    label, chart = lot["label"][:, None].float(), lot["chart"].movedim(-1, 1).float()
+    return Ground(label, normals(lot), chart, openness(lot))
+
+
+def normals(lot: dict[str, Tensor]) -> Image:
+    """Unit normals of the geometry buffers, ahead where there is none."""
+    return unit(lot["normal"].movedim(-1, 1).float() + 1e-3)
+
+
+def openness(lot: dict[str, Tensor]) -> Map:
+    """The share of the sky of the geometry buffers."""
+    return lot["openness"][:, None].float() / 255
 
 
 def _sampled(paint: Paint, place: Float[Tensor, "batch 2 height width"]) -> Paint:

@@ -11,7 +11,7 @@ from train.twin.part import Part, clipped, joined, part, sheet
 
 ROWS, COLUMNS, BACK = 168, 204, 24
 EYE_AT, EYE_WIDE, IRIS = (0.34, 0.02), 0.135, 0.055
-"""Places and sizes of `train.texture`, in radians of the chart."""
+"""Places and sizes that paint around them counts on, in radians of the chart."""
 MOUTH_AT, MOUTH_WIDE = -0.66, 0.19
 LID, LIP = 0.016, 0.03
 """How far eyes and teeth lie behind the lids and the lips, in half heads."""

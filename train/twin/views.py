@@ -35,6 +35,14 @@ class Buffers(NamedTuple):
     seen: UInt64[np.ndarray, "*count size size"]
 
 
+class Facing(NamedTuple):
+    """`normal`, `openness` and `seen` of `Buffers`, for the pixels that a surface is under."""
+
+    normal: Int8[np.ndarray, "hits 3"]
+    openness: UInt8[np.ndarray, "hits"]
+    seen: UInt64[np.ndarray, "hits"]
+
+
 def cast(head: Head, draw: np.random.Generator, size: int) -> Buffers:
     """A head from a side, distance and framing that are drawn by lot."""
     scene = Scene(Mesh(head.vertices, head.triangles, name="a synthetic head"))
@@ -56,7 +64,7 @@ def draw_view(draw: np.random.Generator, size: int) -> Orthographic | Perspectiv
 
 
 def rotation(angles: Float[np.ndarray, "3"]) -> Float[np.ndarray, "3 3"]:
-    """From the head's axes to the camera's, as `train.render` turns heads."""
+    """From the head's axes to the camera's: pitch, then yaw, then roll."""
     (a, b, c), (p, q, r) = np.cos(angles), np.sin(angles)
     about_x = np.array([[1, 0, 0], [0, a, -p], [0, p, a]])
     about_y = np.array([[b, 0, q], [0, 1, 0], [-q, 0, b]])
@@ -71,11 +79,17 @@ def buffers(head: Head, scene: Scene, view: Orthographic | Perspective) -> Buffe
     hit, turn = found.hit, view.rotation
     corners = head.chart[head.triangles[found.triangle]]
     blank.label[hit] = head.label[found.triangle]
-    blank.normal[hit] = np.round(127 * found.normal @ turn.T)
     blank.chart[hit] = np.einsum("pk,pkx->px", found.barycentric, corners)
-    blank.seen[hit], open_ = _visibility(found, DIRECTIONS @ turn)
-    blank.openness[hit] = np.round(255 * open_)
+    blank.normal[hit], blank.openness[hit], blank.seen[hit] = facing(found, turn)
     return blank
+
+
+def facing(found: GeometryBuffers, turn: Float[np.ndarray, "3 3"]) -> Facing:
+    """Where the surface under the pixels that hit it looks, and what light reaches it; the rows of
+    `turn` are the camera's axes."""
+    seen, open_ = _visibility(found, DIRECTIONS @ turn)
+    normal = np.round(127 * found.normal @ turn.T).astype(np.int8)
+    return Facing(normal, np.round(255 * open_).astype(np.uint8), seen)
 
 
 def _blank(size: int) -> Buffers:
