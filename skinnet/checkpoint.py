@@ -10,7 +10,7 @@ from skinnet import __version__
 from skinnet.autoencoder import AutoencoderConfig, SkinAutoencoder
 from skinnet.errors import InputError
 
-FORMAT = 1
+FORMAT = 2
 _PREFIX = "model."
 
 

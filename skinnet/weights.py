@@ -14,7 +14,7 @@ from skinnet.autoencoder import AutoencoderConfig, SkinAutoencoder
 from skinnet.errors import InputError
 
 KIND = "autoencoder"
-FORMAT = "1"
+FORMAT = "2"
 SHIPPED = Path(__file__).parent / "models" / "skin.safetensors"
 
 

@@ -27,6 +27,9 @@ NODES = (256, 256)
 FEW = 5
 """Scans below which a full calibration cannot be trusted to have seen all kinds of skin."""
 
+LOOSE = 0.03
+"""Relative standard error of a transform that is worth a word."""
+
 SAMPLE = 100_000
 """Colours of all scans together that a full calibration is given."""
 
@@ -95,7 +98,7 @@ class ColourSettings:
         return np.asarray(linear[1] / linear, np.float64)
 
     def _exposures(self, matrix: Matrix, samples: Samples) -> "Calibrated":
-        model = self._model_colours(matrix)
+        model = self._model_colours(matrix).reshape(-1, 3)
         return Calibrated(np.eye(3), [exposure(one, model, self.seed) for one in samples], {})
 
     def _full(self, matrix: Matrix, samples: Samples) -> "Calibrated":
@@ -108,6 +111,12 @@ class ColourSettings:
         most = max(SAMPLE // len(samples), 1)
         data = np.concatenate([draw.permutation(one)[:most] for one in samples])
         found = calibrate(data, self._model_colours(matrix), self.seed)
+        if found.uncertainty > LOOSE:
+            say(
+                f"these colours fix the transform to {found.uncertainty:.0%} only, however well "
+                "they fit it; take scans of more kinds of skin, or one exposure a scan "
+                "(--colour.calibration exposure)."
+            )
         record = {name: value for name, value in asdict(found).items() if name != "transform"}
         return Calibrated(found.transform, [1.0] * len(samples), record)
 
@@ -127,7 +136,7 @@ class ColourSettings:
     def _colour(self, matrix: Matrix, transform: Float[np.ndarray, "3 3"]) -> SkinColour:
         return SkinColour(matrix, transform, self.optics, NODES, self.light, self.camera)
 
-    def _model_colours(self, matrix: Matrix) -> Float[np.ndarray, "nodes 3"]:
+    def _model_colours(self, matrix: Matrix) -> Float[np.ndarray, "mel blood 3"]:
         """Colours over the ranges that are looked in, a few thousand."""
         axes = [
             torch.linspace(low**0.5, high**0.5, 64, dtype=torch.float64) ** 2
@@ -135,7 +144,8 @@ class ColourSettings:
         ]
         f_mel, f_blood = (axis.ravel() for axis in torch.meshgrid(*axes, indexing="ij"))
         reflectance = SkinReflectance(self.optics, dtype=torch.float64)
-        return np.asarray(reflectance(f_mel, f_blood).numpy() @ matrix)
+        colours = reflectance(f_mel, f_blood).numpy() @ matrix
+        return np.asarray(colours.reshape(*(len(axis) for axis in axes), 3))
 
 
 @dataclass(frozen=True)

@@ -7,10 +7,10 @@ from skinnet.camera import LIGHTS
 
 Lot = dict[str, NDArray[np.float32]]
 
-MELANIN = (0.012, 0.30)
-"""Base melanin, even in its logarithm: typology angles of 75 to -50 degrees."""
+MELANIN = (0.015, 0.30)
+"""Base melanin, even in its logarithm: typology angles of 73 to -50 degrees."""
 
-HEMOGLOBIN = (0.018, 0.085)
+HEMOGLOBIN = (0.018, 0.090)
 """Base blood, even in its logarithm: somewhat beyond the middle 90 % of measured forearms."""
 
 WHITE_BALANCE_SD = 0.03
@@ -157,7 +157,7 @@ def draw_camera(rng: np.random.Generator, size: int) -> dict[str, object]:
     return {
         "pick": rng.random(),
         "white_balance": rng.normal(0, WHITE_BALANCE_SD, 2),
-        "exposure": np.exp(rng.normal(0, 0.4)),
+        "exposure": np.exp(rng.normal(0, 0.5)),
         "metering": rng.uniform(0, 0.7),
         "tone": rng.normal((0, 0.15), (0.06, 0.25)),
         "blur": rng.uniform(0.35, 1.1) * rng.choice([1, 1, 1, 2]),
