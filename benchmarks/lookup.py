@@ -1,8 +1,8 @@
 """How long the inverse of a table of skin takes on a whole map, and how exact it is.
 
 `python -m benchmarks.lookup [--json]`. A 1024 x 1024 float32 map is inverted with a table of
-256 x 256 nodes: the face of a synthetic head, with brows, eyes, nostrils, mouth and some of its
-hair, a uniform cast as of a residual shading, and noise, so that no two texels are the same. The
+256 x 256 nodes: the face of a synthetic head, with brows, lashes, nostrils, mouth and what beard it
+has, a uniform cast as of a residual shading, and noise, so that no two texels are the same. The
 nearest node is that of scipy's cKDTree on the same colours, with two workers; the two take turns in
 one process and the least time of each counts. `skin` is the same with the skin alone, which lies
 on the table's surface but for the noise and is what suits a tree best.
@@ -13,6 +13,7 @@ from collections.abc import Callable
 
 import numpy as np
 import torch
+import torch.nn.functional as F
 from jaxtyping import Float, Int
 from scipy.spatial import cKDTree
 from torch import Tensor
@@ -23,8 +24,8 @@ from skinnet.lightstage import spectrum_matrix
 from skinnet.lookup import SkinLookup
 from skinnet.nearest import NearestNode
 from skinnet.reflectance import SkinReflectance
-from train.scene import draw_scene
-from train.texture import paint_head
+from train.twin.lot import draw_lot
+from train.twin.paint import Paint, paint_skin
 
 SIZE, NODES, ROUNDS, REPEATS = 1024, 256, 2, 3
 WORKERS = 2
@@ -42,11 +43,12 @@ SAMPLE = 2000
 
 @torch.no_grad()
 def face(lookup: SkinLookup, matrix: Tensor, size: int) -> tuple[Tensor, Tensor]:
-    """Linear RGB [size, size, 3] of a face, and of the skin under its hair, brows and eyes."""
+    """Linear RGB [size, size, 3] of a face, and of the skin under its brows, lashes and beard."""
     rng = np.random.default_rng(SEED)
-    scene = {name: torch.from_numpy(value)[None] for name, value in draw_scene(rng, 8).items()}
+    lot = {name: torch.from_numpy(value)[None] for name, value in draw_lot(rng, 8).items()}
     rows, columns = (round(size / (part.stop - part.start)) for part in FACE)
-    textures, _ = paint_head(scene, rows, columns)
+    whole = (rows, columns)
+    textures = Paint(*(F.interpolate(part, whole, mode="bilinear") for part in paint_skin(lot)))
     inside = [
         slice(round(p.start * n), round(p.start * n) + size)
         for p, n in zip(FACE, (rows, columns), strict=True)

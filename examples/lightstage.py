@@ -26,28 +26,29 @@ from skinnet.shape.default import default_model
 from skinnet.shape.landmarks import write_landmarks
 from skinnet.shape.mesh import Mesh
 from skinnet.shape.meshfile import write_mesh
-from train.scene import draw_scene
-from train.texture import paint_head
+from train.twin.lot import draw_lot
+from train.twin.paint import Paint, paint_skin
 
 LIGHT, CAMERA = "LED-B3", "Nikon D200"
 FILTER = np.array([[0.80, 0.05, 0.01], [0.03, 0.86, 0.04], [0.01, 0.06, 0.92]])
 """What the polariser does to the model's colours; unknown to the commands."""
 
-BARE = {"beard": 0.0, "glasses": 0.0, "volume": 0.0, "brow": 0.3}
+BARE = {"beard": 0.0, "stubble": 0.0, "make_up": 0.0, "brow": 0.3}
 PIGMENTS = ("f_mel", "f_blood")
 
 
 def person(number: int, people: int, texels: int) -> dict[str, np.ndarray]:
     """Pigments and what is not skin over the chart, [texels, texels]."""
     draw = np.random.default_rng([25, number])
-    scene = draw_scene(draw, 8)
+    lot = draw_lot(draw, 8)
     # Melanin evenly over its range, in an order that is not that of the numbers.
-    scene["f_mel"] = np.float32(0.012 * 16 ** ((7 * number % people + draw.random()) / people))
-    scene |= {name: np.float32(value) for name, value in BARE.items()}
-    batch = {name: torch.from_numpy(np.asarray(value))[None] for name, value in scene.items()}
-    painted, _ = paint_head(batch, texels, texels)
+    lot["f_mel"] = np.float32(0.012 * 16 ** ((7 * number % people + draw.random()) / people))
+    lot |= {name: np.float32(value) for name, value in BARE.items()}
+    batch = {name: torch.from_numpy(np.asarray(value))[None] for name, value in lot.items()}
+    size = (texels, texels)
+    painted = Paint(*(F.interpolate(part, size, mode="bilinear") for part in paint_skin(batch)))
     pores = torch.from_numpy(draw.normal(size=(2, 1, texels // 4, texels // 4)).astype(np.float32))
-    pores = F.interpolate(pores, (texels, texels), mode="bicubic")[:, 0].mul(0.04).exp()
+    pores = F.interpolate(pores, size, mode="bicubic")[:, 0].mul(0.04).exp()
     return {
         "f_mel": (painted.melanin[0, 0] * pores[0]).clamp(1e-4, 0.42).numpy(),
         "f_blood": (painted.hemoglobin[0, 0] * pores[1]).clamp(1e-4, 0.14).numpy(),

@@ -6,13 +6,16 @@ from pathlib import Path
 import numpy as np
 import pytest
 from pipeline_scans import SIZE, pigments
+from torch.utils.data import default_collate
 
 from skinnet.appearance.colour import SkinColour
 from skinnet.appearance.mapsfile import save_maps
 from skinnet.appearance.subjects import SkinTexture
 from skinnet.shape.default import default_model
 from skinnet.shape.meshfile import write_mesh
+from train.batch import Batch
 from train.cli import main
+from train.twin.faces import Lots, TwinFaces
 
 Fit = Callable[..., int]
 
@@ -22,6 +25,10 @@ SMALL = (
     "--data.init_args.batch_size=4",
     "--data.init_args.train_samples=16",
     "--data.init_args.val_samples=4",
+    "--data.init_args.test_samples=4",
+    "--data.init_args.heads=2",
+    "--data.init_args.val_heads=1",
+    "--data.init_args.test_heads=1",
     "--trainer.precision=32-true",
     "--trainer.accelerator=cpu",
     "--trainer.enable_progress_bar=false",
@@ -44,11 +51,27 @@ def faces(tmp_path_factory: pytest.TempPathFactory) -> Path:
     return folder
 
 
+@pytest.fixture(scope="session")
+def casts(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """Where the heads of all small runs are kept, so that each is cast once."""
+    return tmp_path_factory.mktemp("geometry")
+
+
+@pytest.fixture(scope="session")
+def batch(casts: Path) -> Callable[[int], Batch]:
+    """Makes a batch of that many pictures, 32 pixels wide, of one head."""
+    data = TwinFaces(size=32, heads=1, val_heads=1, geometry=str(casts))
+    data.setup("fit")
+    lots = Lots(data.buffers["train"], "train", 100, seed=0)
+    return lambda count: data.render(default_collate([lots[i] for i in range(count)]), "train")
+
+
 @pytest.fixture
-def fit_arguments() -> Callable[..., list[str]]:
+def fit_arguments(casts: Path) -> Callable[..., list[str]]:
     """The arguments of a small run of `configs/quick.yaml` in a folder."""
+    kept = f"--data.init_args.geometry={casts}"
     return lambda folder, *arguments: [
-        *("fit", "--config=configs/quick.yaml", f"--run={folder}", *SMALL, *arguments)
+        *("fit", "--config=configs/quick.yaml", f"--run={folder}", *SMALL, kept, *arguments)
     ]
 
 

@@ -18,7 +18,8 @@ SMALL = (
     "--trainer.accelerator=cpu",
     "--trainer.enable_progress_bar=false",
 )
-SYNTHETIC = ("--data.init_args.train_samples=4", "--data.init_args.val_samples=2")
+FEW = ("train_samples=4", "val_samples=2")
+HEADS = ("heads=1", "val_heads=1")
 
 
 @pytest.fixture
@@ -31,20 +32,15 @@ def photographs(tmp_path: Path) -> Path:
     return folder
 
 
-def data_of(path: Path, photographs: Path, faces: Path) -> tuple[str, ...]:
+def data_of(path: Path, photographs: Path, faces: Path, casts: Path) -> tuple[str, ...]:
+    heads = (*HEADS, f"geometry={casts}")
     if path.stem == "fitted":
-        own = ("texels=16", "shots=2", f"folder={faces}")
-        return (*SYNTHETIC, *(f"--data.init_args.{each}" for each in own))
+        return (*FEW, "texels=16", "shots=2", f"folder={faces}")
     if path.stem != "portraits":
-        return SYNTHETIC
-    nested = "--data.init_args.synthetic"
-    return (
-        f"--data.init_args.folder={photographs}",
-        "--data.init_args.unreadable_share=0.2",
-        f"{nested}.size=16",
-        f"{nested}.batch_size=2",
-        f"{nested}.val_samples=2",
-    )
+        return (*FEW, *heads)
+    nested = ("size=16", "batch_size=2", "val_samples=2", *heads)
+    own = (f"folder={photographs}", "unreadable_share=0.2")
+    return (*own, *(f"twin.{each}" for each in nested))
 
 
 EXPERIMENTS = [
@@ -53,8 +49,10 @@ EXPERIMENTS = [
 
 
 @pytest.mark.parametrize("path", EXPERIMENTS, ids=lambda path: path.stem)
-def test_a_configuration_runs(path: Path, photographs: Path, faces: Path, tmp_path: Path) -> None:
+def test_a_configuration_runs(
+    path: Path, photographs: Path, faces: Path, casts: Path, tmp_path: Path
+) -> None:
     run = tmp_path / "run"
-    data = data_of(path, photographs, faces)
+    data = [f"--data.init_args.{each}" for each in data_of(path, photographs, faces, casts)]
     assert main(["fit", f"--config={path}", f"--run={run}", *SMALL, *data]) == 0
     assert (run / "best.ckpt").is_file()

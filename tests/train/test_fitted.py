@@ -14,7 +14,7 @@ from skinnet.appearance.spool import spool
 from skinnet.appearance.subjects import SkinTexture
 from skinnet.decoder import srgb
 from skinnet.errors import InputError
-from train.fitted import FittedFaces, FittedScenes, shrunk
+from train.fitted import FittedFaces, FittedLots, shrunk
 
 
 @pytest.fixture(scope="module")
@@ -25,8 +25,8 @@ def data(faces: Path) -> FittedFaces:
 
 
 def batch(data: FittedFaces, split: str = "train"):
-    scenes = FittedScenes(data, split, 4)
-    return data.on_after_batch_transfer(default_collate([scenes[i] for i in range(4)]), 0)
+    lots = FittedLots(data, split, 4)
+    return data.on_after_batch_transfer(default_collate([lots[i] for i in range(4)]), 0)
 
 
 def test_the_truth_explains_the_picture(data: FittedFaces) -> None:
@@ -46,7 +46,7 @@ def test_the_pigments_are_the_faces_own(data: FittedFaces, faces: Path) -> None:
     assert mean == pytest.approx(texture.f_mel.mean(), rel=0.2)
 
 
-def test_scenes_are_the_same_twice_and_differ_between_splits(data: FittedFaces) -> None:
+def test_pictures_are_the_same_twice_and_differ_between_splits(data: FittedFaces) -> None:
     first, again = (batch(data).photograph for _ in range(2))
     assert torch.equal(first, again)
     assert not torch.equal(first, batch(data, "val").photograph)
@@ -87,7 +87,7 @@ def test_half_of_the_faces_wear_a_drawn_skin(faces: Path, tmp_path: Path) -> Non
     HybridModel.fit(stack).save(tmp_path / "hybrid.npz")
     data = FittedFaces(str(faces), str(tmp_path / "hybrid.npz"), size=16, texels=8, shots=1)
     data.setup("fit")
-    scenes = FittedScenes(data, "train", 40)
+    scenes = FittedLots(data, "train", 40)
     own = data.skins[0][0]
     drawn = [not np.array_equal(scenes[i]["skin"], own) for i in range(40)]
     assert 8 < sum(drawn) < 32

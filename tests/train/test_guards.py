@@ -42,7 +42,7 @@ def test_a_loss_that_is_no_number_stops_training_at_the_last_good_step(
     break_loss(monkeypatch, "specular", 7)  # four steps, a validation batch, two steps
     assert fit(run, "--trainer.max_epochs=2") == 2
     said = capsys.readouterr().err
-    assert "step 5, where losses are not finite: train/synthetic_specular, train/loss." in said
+    assert "step 5, where losses are not finite: train/twin_specular, train/loss." in said
     assert f"--ckpt_path {run / 'last.ckpt'}" in said
     assert read_checkpoint(run / "last.ckpt")["global_step"] == 5
     model, _ = load_checkpoint(run / "last.ckpt")
@@ -56,7 +56,7 @@ def test_without_a_checkpoint_the_remedy_is_a_new_run(
     break_loss(monkeypatch, "pigments", 1)
     assert fit(tmp_path / "run", "--trainer.max_epochs=1") == 2
     said = capsys.readouterr().err
-    assert "step 0" in said and "train/synthetic_pigments" in said
+    assert "step 0" in said and "train/twin_pigments" in said
     assert "learning_rate" in said and "ckpt_path" not in said
     assert not (tmp_path / "run" / "last.ckpt").exists()
 

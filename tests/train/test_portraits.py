@@ -13,9 +13,10 @@ from skimage.data import astronaut
 
 from skinnet.checkpoint import read_checkpoint
 from skinnet.errors import InputError
+from skinnet.images import srgb_to_linear
 from train.callbacks import LastCheckpoint, PictureGrid
 from train.cli import main
-from train.portraits import Crop, Crops, find_crops
+from train.portraits import Crop, Crops, Portraits, find_crops, varied
 
 
 def test_a_face_is_found_cropped_and_masked(tmp_path: Path) -> None:
@@ -63,14 +64,15 @@ def test_a_folder_without_faces_is_refused(tmp_path: Path) -> None:
         find_crops(tmp_path, 32)
 
 
-def fit(photographs: Path, run: Path, *arguments: str) -> int:
+def fit(photographs: Path, casts: Path, run: Path, *arguments: str) -> int:
     """Two epochs of three steps of two of seven photographs."""
     data = (f"folder={photographs}", "size=16", "batch_size=2", "unreadable_share=0.2")
-    synthetic = ("size=16", "batch_size=2", "val_samples=2")
+    heads = ("heads=1", "val_heads=1", f"geometry={casts}")
+    twin = ("size=16", "batch_size=2", "val_samples=2", *heads)
     return main([
         *("fit", "--config=configs/portraits.yaml", f"--run={run}", "--model.weights=null"),
         *("--model.widths=[4,8]", *(f"--data.init_args.{each}" for each in data)),
-        *(f"--data.init_args.synthetic.{each}" for each in synthetic),
+        *(f"--data.init_args.twin.{each}" for each in twin),
         *("--trainer.precision=32-true", "--trainer.accelerator=cpu", "--trainer.max_epochs=2"),
         *("--trainer.enable_progress_bar=false", "--trainer.log_every_n_steps=1", *arguments),
     ])  # fmt: skip
@@ -87,10 +89,10 @@ def photographs(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 
 def test_a_killed_run_goes_on_as_if_it_had_not_been(
-    photographs: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+    photographs: Path, casts: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     whole, parts = tmp_path / "whole", tmp_path / "parts"
-    assert fit(photographs, whole) == 0
+    assert fit(photographs, casts, whole) == 0
     (row,) = rows(whole / "skipped.csv")
     assert row["picture"] == str(photographs / "broken.jpg") and "picture" in row["reason"]
 
@@ -101,9 +103,9 @@ def test_a_killed_run_goes_on_as_if_it_had_not_been(
     monkeypatch.setattr("train.cli.LastCheckpoint", partial(LastCheckpoint, seconds=0.0))
     with monkeypatch.context() as context, pytest.raises(KeyError):
         context.setattr(PictureGrid, "on_train_batch_start", kill)
-        fit(photographs, parts)
+        fit(photographs, casts, parts)
     assert read_checkpoint(parts / "last.ckpt")["global_step"] == 4
-    assert fit(photographs, parts, f"--ckpt_path={parts / 'last.ckpt'}") == 0
+    assert fit(photographs, casts, parts, f"--ckpt_path={parts / 'last.ckpt'}") == 0
     (one, other) = (read_checkpoint(run / "last.ckpt")["state_dict"] for run in (whole, parts))
     assert all(torch.equal(one[name], other[name]) for name in one)
     assert logged(whole) == logged(parts)
@@ -120,9 +122,41 @@ def logged(run: Path) -> set[tuple[str, ...]]:
     return {tuple(row.values()) for row in found if row["metric"].startswith("train/")}
 
 
-def test_every_epoch_shows_every_photograph_once_in_its_own_order() -> None:
+def test_every_epoch_shows_every_photograph_once_in_its_own_order(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
     grey = [Crop(np.full((2, 2, 3), n, np.uint8), np.zeros((2, 2), np.uint8)) for n in range(20)]
     crops = Crops(grey, seed=1)
+    monkeypatch.setattr("train.portraits.varied", lambda crop, draw: crop)
     epochs = [[int(crops[20 * e + i].photograph[0, 0, 0]) for i in range(20)] for e in range(2)]
     assert sorted(epochs[0]) == sorted(epochs[1]) == list(range(20))
     assert epochs[0] != epochs[1]
+
+
+def test_photographs_vary_by_seed_epoch_and_index_alone() -> None:
+    grey = [Crop(np.full((2, 2, 3), 120, np.uint8), np.zeros((2, 2), np.uint8))]
+    first, again, other = (Crops(grey, seed) for seed in (1, 1, 2))
+    drawn = [[crops[index].photograph for index in range(50)] for crops in (first, again, other)]
+    np.testing.assert_array_equal(drawn[0], drawn[1])
+    assert (np.array(drawn[0]) != drawn[2]).any()
+    light = np.log(srgb_to_linear(np.array(drawn[0])[:, 0, 0]))
+    assert 0.15 < light[:, 1].std() < 0.4
+    assert 0.01 < (light[:, 0] - light[:, 1]).std() < 0.04
+
+
+def test_a_brighter_photograph_clips_and_keeps_its_mask() -> None:
+    bright = Crop(np.full((2, 2, 3), 250, np.uint8), np.full((2, 2), 7, np.uint8))
+    made = [varied(bright, np.random.default_rng(n)) for n in range(20)]
+    assert max(each.photograph.max() for each in made) == 255
+    assert all((each.mask == 7).all() for each in made)
+
+
+def test_photographs_kept_for_validation_are_left_as_they_are(tmp_path: Path) -> None:
+    data = Portraits(str(tmp_path), size=16, batch_size=2)
+    draw = np.random.default_rng(0)
+    pictures = draw.integers(0, 255, (4, 16, 16, 3), np.uint8)
+    data.crops = {"val": [Crop(each, each[..., 0]) for each in pictures]}
+    data.twin.buffers = {"val": {"label": np.zeros((1, 16, 16), np.uint8)}}
+    loader = data.val_dataloader().iterables["portraits"]
+    shown = np.concatenate([batch.photograph for batch in loader])
+    np.testing.assert_array_equal(shown, pictures)

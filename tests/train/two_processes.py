@@ -6,7 +6,7 @@ import torch
 from lightning import Callback, LightningModule, Trainer
 from torch import Tensor, distributed, nn
 
-from train.synthetic import Scenes
+from train.twin.faces import Lots
 
 
 class _Sum(torch.autograd.Function):
@@ -59,15 +59,15 @@ class Witness(Callback):
         for module in pl_module.modules():
             if type(module) is nn.BatchNorm2d:
                 module.__class__ = SharedBatchNorm
-        drawn, notes = Scenes.__getitem__, self.folder / f"{trainer.global_rank}.txt"
+        drawn, notes = Lots.__getitem__, self.folder / f"{trainer.global_rank}.txt"
 
-        def noted(scenes: Scenes, index: int) -> object:
-            if scenes.key[1] == 0:
+        def noted(lots: Lots, index: int) -> object:
+            if lots.key[1] == 0:
                 with notes.open("a") as file:
                     file.write(f"{index}\n")
-            return drawn(scenes, index)
+            return drawn(lots, index)
 
-        Scenes.__getitem__ = noted  # type: ignore[method-assign]
+        Lots.__getitem__ = noted  # type: ignore[method-assign]
 
     def on_train_batch_start(
         self, trainer: Trainer, pl_module: LightningModule, batch: object, batch_idx: int
