@@ -39,10 +39,10 @@ def test_a_loss_that_is_no_number_stops_training_at_the_last_good_step(
     fit: Fit, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
     run = tmp_path / "run"
-    break_loss(monkeypatch, "specular", 7)  # four steps, a validation batch, two steps
+    break_loss(monkeypatch, "lighting", 7)  # four steps, a validation batch, two steps
     assert fit(run, "--trainer.max_epochs=2") == 2
     said = capsys.readouterr().err
-    assert "step 5, where losses are not finite: train/twin_specular, train/loss." in said
+    assert "step 5, where losses are not finite: train/twin_lighting, train/loss." in said
     assert f"--ckpt_path {run / 'last.ckpt'}" in said
     assert read_checkpoint(run / "last.ckpt")["global_step"] == 5
     model, _ = load_checkpoint(run / "last.ckpt")

@@ -151,6 +151,7 @@ def test_a_brighter_photograph_clips_and_keeps_its_mask() -> None:
     assert all((each.mask == 7).all() for each in made)
 
 
+@pytest.mark.filterwarnings("ignore:.isinstance.treespec")
 def test_photographs_kept_for_validation_are_left_as_they_are(tmp_path: Path) -> None:
     data = Portraits(str(tmp_path), size=16, batch_size=2)
     draw = np.random.default_rng(0)

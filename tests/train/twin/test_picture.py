@@ -20,7 +20,7 @@ from train.twin.lot import draw_lot
 from train.twin.paint import paint_skin
 
 COUNT = 6
-PLAIN = {"blur": 0.0, "noise": 0.0, "quality": 0.0, "tone": 0.0, "flip": 0.0}
+PLAIN = {"blur": 0.05, "noise": 0.0, "quality": 0.0, "tone": 0.0, "flip": 0.0}
 
 Lot = dict[str, torch.Tensor]
 Made = Callable[..., Batch]
@@ -74,7 +74,8 @@ def test_a_capture_is_close_to_the_measured_camera(made: Made, data: TwinFaces, 
     matrix, capture = camera.pictured(lot, data.decoder.camera, "train")
     f_mel, f_blood = (lot[name][:, None, None] for name in ("f_mel", "f_blood"))
     measured, said = (
-        data.decoder.skin(f_mel, f_blood, one) for one in (matrix, data.decoder.camera(capture))
+        data.decoder.skin(f_mel, f_blood, one)
+        for one in (matrix, data.decoder.camera.matrix(capture))
     )
     assert (measured / said).log().abs().max() < 0.15
 
@@ -179,5 +180,5 @@ def test_paint_covers_shares_of_the_chart(lot: Lot) -> None:
 
 def test_lots_cover_pale_and_dark_skin_evenly() -> None:
     low, high = np.log(0.015), np.log(0.30)
-    drawn = [np.log(draw_lot(np.random.default_rng(n), 2)["f_mel"]) for n in range(150)]
+    drawn = [np.log(draw_lot(np.random.default_rng(n), 2)["f_mel"]) for n in range(100)]
     assert 0.38 < np.mean(np.array(drawn) < (low + high) / 2) < 0.62
