@@ -14,7 +14,8 @@ from skinnet.detail import pigment_detail
 from skinnet.faces import resize
 from skinnet.images import linear_to_srgb, srgb_to_linear, to_uint8
 
-LUMINANCE = np.array([0.2126, 0.7152, 0.0722], np.float32)
+LUMINANCE = (0.2126, 0.7152, 0.0722)
+"""Shares of linear sRGB in luminance (IEC 61966-2-1)."""
 
 _BLOCK = 1 << 18
 """Pixels worked on at a time: few enough for the cache, many enough for NumPy."""
@@ -89,8 +90,14 @@ def _explain(
 
 def _shading(light: Image, skin: Image, top: float) -> Image:
     """Luminance of light [pixels, 3] relative to that of skin [pixels, 3]."""
-    bare = np.maximum(skin @ LUMINANCE, np.float32(1e-4))
-    return np.asarray((light @ LUMINANCE / bare).clip(0, top), np.float32)
+    shading: Image = (_luminance(light) / np.maximum(_luminance(skin), 1e-4)).clip(0, top)
+    return shading
+
+
+def _luminance(linear: Image) -> Image:
+    # Not a matrix product, whose rounding depends on the number of pixels.
+    red, green, blue = linear.T
+    return LUMINANCE[0] * red + LUMINANCE[1] * green + LUMINANCE[2] * blue
 
 
 def _between(a: Image, b: Image, share: Image) -> Image:

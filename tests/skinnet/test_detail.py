@@ -195,7 +195,7 @@ def test_what_is_not_skin_stays_as_it_was(
     left = np.s_[:, : SIZE // 2 - 2 * SIZE // SMALL]
     for a, b in zip(before, after, strict=True):
         np.testing.assert_array_equal(a[left], b[left])
-        assert a is after.specular or a is after.mask or not np.array_equal(a, b) or a.std() == 0
+    assert np.abs(after.shading - before.shading)[:, SIZE // 2 :].mean() > 0.02
 
 
 def test_a_hair_on_skin_is_no_pigment(skin: SkinDecoder, table: ColourTable, truth: Maps) -> None:
@@ -217,7 +217,8 @@ def test_the_table_is_the_decoder(skin: SkinDecoder, table: ColourTable) -> None
     melanin[0], hemoglobin[:, 0], melanin[-1] = 0, 0, TOP[0]
     with torch.no_grad():
         exact = skin(torch.from_numpy(melanin), torch.from_numpy(hemoglobin)).permute(1, 2, 0)
-    np.testing.assert_allclose(table(melanin, hemoglobin), exact.numpy(), atol=8e-4)
+    # The decoder's pictures are clipped at black, which the darkest skin reaches in blue.
+    np.testing.assert_allclose(table(melanin, hemoglobin), exact.clamp(min=0).numpy(), atol=8e-4)
 
 
 def test_the_decomposer_takes_detail_where_there_is_some(
