@@ -34,6 +34,12 @@ class Layers(NamedTuple):
     offset: Image
     reconstruction: NDArray[np.uint8]
 
+    def rows(self, block: slice) -> "Layers":
+        """Views of some rows."""
+        melanin, hemoglobin, shading, specular, mask, offset = (map_[block] for map_ in self[:6])
+        pictures = offset, self.reconstruction[block]
+        return Layers(melanin, hemoglobin, shading, specular, mask, *pictures)
+
 
 def sharpen(
     layers: Layers,
@@ -66,7 +72,7 @@ def sharpen(
 def _explain(
     layers: Layers, crop: NDArray[np.uint8], block: slice, table: ColourTable, shading_top: float
 ) -> None:
-    some = Layers(*(layer[block] for layer in layers))
+    some = layers.rows(block)
     weight = soft_mask(some.mask)
     at = np.nonzero(weight)
     if not at[0].size:
@@ -97,7 +103,8 @@ def _shading(light: Image, skin: Image, top: float) -> Image:
 def _luminance(linear: Image) -> Image:
     # Not a matrix product, whose rounding depends on the number of pixels.
     red, green, blue = linear.T
-    return LUMINANCE[0] * red + LUMINANCE[1] * green + LUMINANCE[2] * blue
+    luminance: Image = LUMINANCE[0] * red + LUMINANCE[1] * green + LUMINANCE[2] * blue
+    return luminance
 
 
 def _between(a: Image, b: Image, share: Image) -> Image:
