@@ -30,6 +30,7 @@ bench: $(READY)
 	$(BIN)/python -m benchmarks.texture
 	$(BIN)/python -m benchmarks.lookup
 	$(BIN)/python -m benchmarks.appearance
+	$(BIN)/python -m benchmarks.encoder
 
 wheel: $(READY)
 	$(BIN)/python -m build --wheel
