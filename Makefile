@@ -30,6 +30,8 @@ bench: $(READY)
 	$(BIN)/python -m benchmarks.texture
 	$(BIN)/python -m benchmarks.lookup
 	$(BIN)/python -m benchmarks.appearance
+	$(BIN)/python -m benchmarks.full_resolution
+	$(BIN)/python -m benchmarks.encoder
 
 wheel: $(READY)
 	$(BIN)/python -m build --wheel

@@ -8,13 +8,18 @@ from typing import Any
 Results = dict[str, Any]
 
 
-def main(measure: Callable[[], Results], description: str) -> None:
-    """Measures, then prints a table, or with `--json` one object."""
+def main(
+    measure: Callable[[], Results],
+    description: str,
+    layout: Callable[[Results], str] | None = None,
+) -> None:
+    """Measures, then prints a table (`layout`'s, or a line a number), or with `--json` one
+    object."""
     parser = argparse.ArgumentParser(description=description)
     parser.add_argument("--json", action="store_true", help="print one JSON object")
     as_json = parser.parse_args().json
     results = measure()
-    print(json.dumps(results) if as_json else table(results))
+    print(json.dumps(results) if as_json else (layout or table)(results))
 
 
 def table(results: Mapping[str, Any]) -> str:

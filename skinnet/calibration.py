@@ -59,8 +59,8 @@ class Calibration:
 
 
 def calibrate(
-    data: Float[np.ndarray, "colours 3"],
-    model: Shaped[np.ndarray, "*nodes 3"],
+    data: Float[np.ndarray, "colours channels"],
+    model: Shaped[np.ndarray, "*nodes channels_of_model"],
     seed: int = 0,
 ) -> Calibration:
     """The 3 x 3 transform of section 4.3, from linear RGB of skin alone.
@@ -192,7 +192,7 @@ def _checked(colours: Float[np.ndarray, "n channels"]) -> Float[np.ndarray, "n 3
     return colours.astype(np.float64)
 
 
-def _grid(model: Shaped[np.ndarray, "*nodes 3"]) -> Float[np.ndarray, "rows columns 3"]:
+def _grid(model: Shaped[np.ndarray, "*nodes channels"]) -> Float[np.ndarray, "rows columns 3"]:
     """The model's colours as a grid. One list is a grid if neighbours in it follow smoothly."""
     if model.ndim not in (2, 3) or model.shape[-1] != 3 or not np.isfinite(model).all():
         raise InputError(

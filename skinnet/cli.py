@@ -78,6 +78,12 @@ def _add_predict(verbs: "argparse._SubParsersAction[argparse.ArgumentParser]") -
         "-o", "--output", type=Path, metavar="DIR", help="default: skinmaps beside the photograph"
     )
     verb.add_argument("--json", action="store_true", help="print the numbers, one object a line")
+    verb.add_argument(
+        "--no-detail",
+        dest="detail",
+        action="store_false",
+        help="leave the maps as soft as the network sees; faster",
+    )
     _add_common(verb)
     verb.set_defaults(run=predict)
 
@@ -131,7 +137,7 @@ def _predict_one(
     from skinnet.results import write_results
 
     photo = read_photo(_readable(source), _name(source))
-    decomposition = decomposer(photo, options.whole_image, _name(source))
+    decomposition = decomposer(photo, options.whole_image, _name(source), options.detail)
     summary = {"file": _name(source)} | decomposition.summary()
     count = write_results(folder, stem, photo, decomposition, summary)
     if options.json:

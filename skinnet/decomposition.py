@@ -20,8 +20,10 @@ class Decomposition:
     """A photograph of skin, taken apart. Maps are float32 [H, W] of the photograph's size.
 
     image = shading * skin(melanin, hemoglobin) + specular + offset in linear RGB, under `light` and
-    seen by `camera`. Outside `box` nothing was looked at: maps are 0 there, and `reconstruction` is
-    the photograph itself.
+    seen by `camera`; with detail this holds for every pixel of skin. `reconstruction` is made with
+    the offset that the network sees, which is smooth: what else skin does not explain is not in it.
+    Outside `box` nothing was looked at: maps are 0 there, and `reconstruction` is the photograph
+    itself.
 
     `melanin`, `hemoglobin`: volume fractions of melanosomes in the epidermis and of blood in the
     dermis, in [0, 1]; `shading` and `specular` relative to the light; `mask`: how surely a pixel is

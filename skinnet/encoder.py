@@ -14,6 +14,9 @@ WIDTHS = (24, 40, 80, 128, 160)
 HEAD = 24
 """Channels of the head, which alone works at the photograph's own resolution."""
 
+GATHERED = 8
+"""Places in the photograph whose colours the scene is told."""
+
 _PIXEL = 9
 _DARKEST = 4e-3
 
@@ -42,6 +45,10 @@ class SkinEncoder(nn.Module):
         self.down = nn.ModuleList(_stage(fine, coarse, stride=2) for fine, coarse in pairs)
         self.scene = nn.Sequential(nn.Linear(2 * deepest, deepest), nn.ReLU())
         self.back = nn.Linear(deepest, deepest)
+        self.gather = nn.Conv2d(widths[0], GATHERED, 1)
+        self.weigh = nn.Sequential(
+            nn.Linear(deepest + 3 * GATHERED, deepest), nn.ReLU(), nn.Linear(deepest, deepest)
+        )
         self.globals = nn.Linear(deepest, globals)
         self.up = nn.ModuleList(_Merge(coarse, fine) for fine, coarse in reversed(pairs))
         self.head = _Head(widths[0], deepest, maps)
@@ -60,8 +67,26 @@ class SkinEncoder(nn.Module):
         x = x + self.back(scene)[..., None, None]
         for merge in self.up:
             x = merge(x, features.pop())
-        pixel = torch.cat([srgb, linear, 0.5 * torch.log(linear + _DARKEST)], 1)
+        log = torch.log(linear + _DARKEST)
+        colours = self._gathered(x, log)
+        scene = scene + self.weigh(torch.cat([scene, colours], 1))
+        pixel = torch.cat([srgb, linear, 0.5 * log], 1)
         return self.head(pixel, x, scene), self.globals(scene)
+
+    def _gathered(
+        self,
+        features: Float[Tensor, "batch f h w"],
+        log: Float[Tensor, "batch 3 height width"],
+    ) -> Float[Tensor, "batch gathered"]:
+        """Mean log colours of the places that the network attends to.
+
+        The white of an eye or a grey wall tells the white balance to a percent; averages of
+        features do not (Hu et al. 2017, FC4).
+        """
+        attention = self.gather(features).flatten(2).softmax(-1).float()
+        small = F.interpolate(log, size=features.shape[-2:], mode="bilinear").flatten(2)
+        # Not a matrix product, which would run in the trunk's precision.
+        return (attention[:, :, None] * small[:, None]).sum(-1).flatten(1)
 
 
 class _Head(nn.Module):

@@ -9,10 +9,12 @@ import numpy as np
 from numpy.typing import NDArray
 from PIL import Image
 
+from skinnet.colour_table import tabulate
 from skinnet.decomposition import Decomposition
 from skinnet.editing import apply_gain, colour_gain, edge_fade
 from skinnet.errors import InputError, NoFaceError
 from skinnet.faces import Box, crop_box, find_face, resize
+from skinnet.full_size import Layers, sharpen
 from skinnet.images import as_photo, srgb_to_linear, to_uint8
 from skinnet.model_file import GLOBALS, MAPS, ModelFile, decoder_path, open_model, shipped_model
 
@@ -56,13 +58,18 @@ class Decomposer:
         _ = self.encoder, self.decoder
 
     def __call__(
-        self, image: ImageLike, whole_image: bool = False, name: str | None = None
+        self,
+        image: ImageLike,
+        whole_image: bool = False,
+        name: str | None = None,
+        detail: bool = True,
     ) -> Decomposition:
         """Decompose a path, a Pillow image or an array as `skinnet.images.as_photo` takes it.
 
         Looks at the square around the largest face, or at everything if `whole_image`; `name`
-        stands for the image in errors. Raises `InputError` for an image or a model file that cannot
-        be used, `NoFaceError` without a face.
+        stands for the image in errors. With `detail`, maps of skin have that of the photograph
+        (`skinnet.full_size.sharpen`); without it they are the network's, enlarged. Raises
+        `InputError` for an image or a model file that cannot be used, `NoFaceError` without a face.
         """
         photo = as_photo(image)
         box = _look_at(photo, whole_image, name or _name(image))
@@ -71,6 +78,8 @@ class Decomposer:
         reconstruction = photo.copy()
         reconstruction[box.slices] = resize(to_uint8(decoded), box.width, box.height)
         maps = {name: _place(codes[name][0], photo, box) for name in (*MAPS, "mask")}
+        if detail and max(box.width, box.height) > self.encoder.working_size:
+            self._sharpen(photo, box, codes, maps | {"reconstruction": reconstruction})
         return Decomposition(
             **maps,
             light=self._light(codes),
@@ -118,6 +127,19 @@ class Decomposer:
         images = self.decoder.run({name: codes[name] for name in _DECODED})["image"]
         clipped: NDArray[np.float32] = np.clip(images[0], 0, 1)
         return clipped
+
+    def _sharpen(
+        self,
+        photo: NDArray[np.uint8],
+        box: Box,
+        codes: dict[str, NDArray[np.float32]],
+        full: dict[str, NDArray[Any]],
+    ) -> None:
+        tops = {name: self.encoder.outputs[name].range[1] for name in MAPS}
+        table = tabulate(self.decoder, codes, (tops["melanin"], tops["hemoglobin"]))
+        layers = Layers(**{name: values[box.slices] for name, values in full.items()})
+        maps = {name: codes[name][0] for name in (*MAPS, "mask")}
+        sharpen(layers, photo[box.slices], maps, table, tops["shading"], self.threads)
 
     def _gain(
         self, codes: dict[str, NDArray[np.float32]], melanin: float, hemoglobin: float

@@ -32,7 +32,7 @@ class LossWeights:
 
     appearance: NonNegativeFloat = 4.0
     elsewhere: NonNegativeFloat = 0.2
-    mask: NonNegativeFloat = 0.6
+    mask: NonNegativeFloat = 1.0
     offset: NonNegativeFloat = 2.0
     camera: NonNegativeFloat = 0.005
     specular: NonNegativeFloat = 0.01
@@ -40,7 +40,7 @@ class LossWeights:
     shading: NonNegativeFloat = 0.02
     pigments: NonNegativeFloat = 8.0
     lighting: NonNegativeFloat = 1.0
-    white_balance: NonNegativeFloat = 0.05
+    white_balance: NonNegativeFloat = 0.5
 
 
 class SkinTask(LightningModule):

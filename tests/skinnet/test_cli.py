@@ -70,6 +70,14 @@ def test_maps_say_what_their_pixels_mean(predict: Predict, photo: Path, tmp_path
     assert values[skin].mean() == pytest.approx(summary["maps"]["melanin"]["mean"], rel=1e-3)
 
 
+def test_maps_are_soft_on_request(predict: Predict, photo: Path, tmp_path: Path) -> None:
+    assert predict(photo, "-o", tmp_path / "fine") == 0
+    assert predict(photo, "--no-detail", "-o", tmp_path / "soft") == 0
+    fine, soft = (pixels(tmp_path / kind / "a_shading.png") for kind in ("fine", "soft"))
+    assert fine.shape == soft.shape == (256, 256)
+    assert np.abs(np.diff(fine / 65535)).mean() > np.abs(np.diff(soft / 65535)).mean()
+
+
 def test_json_alone_goes_to_standard_output(
     predict: Predict, photo: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:

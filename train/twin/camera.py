@@ -60,13 +60,14 @@ def _coefficients(
 def photographed(lot: dict[str, Tensor], linear: Image) -> Image:
     """Display sRGB of linear light: lens, tone curve, noise, compression, eight bits."""
     sigma = (lot["blur"] * linear.shape[-1] / 192)[:, None].expand(-1, 2)
-    display = _toned(lot, gaussian_blur2d(linear.clamp_min(0), 7, sigma))
+    display = toned(lot, gaussian_blur2d(linear.clamp_min(0), 7, sigma))
     spread = column(lot["noise"][:, 0]) + column(lot["noise"][:, 1]) * (1 - display)
     noisy = (display + spread * lot["grain"]).clamp(0, 1)
     return (_compressed(noisy, lot["quality"]) * 255).round() / 255
 
 
-def _toned(lot: dict[str, Tensor], linear: Image) -> Image:
+def toned(lot: dict[str, Tensor], linear: Image) -> Image:
+    """Display sRGB of linear light by a camera's tone curve."""
     contrast, bend = (column(part) for part in lot["tone"].unbind(1))
     display = srgb(PIVOT * (linear / PIVOT + 1e-6) ** contrast.exp())
     return (display + bend * display * (1 - display) * (2 * display - 1)).clamp(0, 1)

@@ -7,8 +7,9 @@ from skinnet.camera import LIGHTS
 
 Lot = dict[str, NDArray[np.float32]]
 
-MELANIN = (0.015, 0.30)
-"""Base melanin, even in its logarithm: typology angles of 73 to -50 degrees."""
+MELANIN = (0.015, 0.25)
+"""Base melanin, even in its logarithm: typology angles of 73 to -38 degrees, and with
+the gloss that an instrument sees a lightness of 80 to 30."""
 
 HEMOGLOBIN = (0.018, 0.090)
 """Base blood, even in its logarithm: somewhat beyond the middle 90 % of measured forearms."""
@@ -88,7 +89,7 @@ def _features(rng: np.random.Generator, melanin: float) -> dict[str, object]:
         "strands": rng.normal(0, 0.35, (1, 16, 110)),
         "brow": rng.uniform(0.3, 1.0),
         "brow_shape": rng.normal(0, (0.015, 0.03, 0.008)),
-        "beard": rng.choice([0.0, rng.uniform(0.1, 1.0)], p=(0.72, 0.28)),
+        "beard": rng.choice([0.0, rng.uniform(0.7, 1.0)], p=(0.78, 0.22)),
         "moustache": rng.choice([0.0, 1.0], p=(0.3, 0.7)),
         "stubble": rng.choice([0.0, rng.uniform(0.05, 0.35)], p=(0.6, 0.4)),
         "beard_grain": rng.random((1, *CHART), np.float32),
@@ -139,7 +140,7 @@ def draw_light(rng: np.random.Generator) -> dict[str, object]:
     sky = rng.normal(0, 1, 9) * (0, 0.16, 0.14, 0.16, 0.05, 0.05, 0.05, 0.05, 0.05)
     sky[1] += 0.10  # more light from above
     daylight = np.eye(len(LIGHTS))[0]
-    other = rng.dirichlet(np.full(len(LIGHTS) - 1, 0.4)) * rng.choice([0, rng.uniform(0, 0.5)])
+    other = rng.dirichlet(np.full(len(LIGHTS) - 1, 0.4)) * rng.choice([0, rng.uniform(0, 0.4)])
     weights = daylight * (1 - other.sum()) + np.r_[0, other]
     return {
         "sky": sky + np.r_[rng.uniform(0.25, 0.75), np.zeros(8)],
@@ -148,7 +149,7 @@ def draw_light(rng: np.random.Generator) -> dict[str, object]:
         # Half width of a lamp in radians: a bare flash, a window.
         "softness": np.exp(rng.uniform(np.log(0.08), np.log(0.7), 3)),
         "light": weights,
-        "temperature": 1e6 / np.clip(rng.normal(168, 18), 120, 235),
+        "temperature": 1e6 / np.clip(rng.normal(172, 12), 120, 235),
     }
 
 
@@ -159,7 +160,7 @@ def draw_camera(rng: np.random.Generator, size: int) -> dict[str, object]:
         "white_balance": rng.normal(0, WHITE_BALANCE_SD, 2),
         "exposure": np.exp(rng.normal(0, 0.5)),
         "metering": rng.uniform(0, 0.7),
-        "tone": rng.normal((0, 0.15), (0.06, 0.25)),
+        "tone": rng.normal((0, 0.12), (0.03, 0.15)),
         "blur": rng.uniform(0.35, 1.1) * rng.choice([1, 1, 1, 2]),
         "grain": rng.standard_normal((3, size, size), np.float32),
         "noise": rng.uniform(0, 1, 2) ** 2 * (0.010, 0.012),

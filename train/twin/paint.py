@@ -115,7 +115,7 @@ def _beard(lot: dict[str, Tensor], side: Tensor, elevation: Tensor) -> Tensor:
     lips = region(side, elevation, 0.0, -0.66, 0.16, 0.06)
     place = jaw * (1 - lips).clamp(0, 1) * soft_step(1.4 - side, 0.1)
     place = place * soft_step(elevation + 1.25, 0.1)
-    hairs = 0.6 + 0.4 * lot["beard_grain"]
+    hairs = 0.8 + 0.2 * lot["beard_grain"]
     return place * torch.maximum(column(lot["stubble"]), column(lot["beard"])) * hairs
 
 

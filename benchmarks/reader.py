@@ -1,0 +1,91 @@
+"""Photographs read by a network as users' are: at its working size, and brought back."""
+
+from collections.abc import Callable
+
+import numpy as np
+import torch
+import torch.nn.functional as F
+from numpy.typing import NDArray
+from torch import Tensor
+
+from benchmarks.scene import Pixels, Scene, on
+from skinnet.autoencoder import SkinAutoencoder, SkinMaps
+from skinnet.capture import Capture
+from skinnet.decoder import SkinDecoder
+from skinnet.faces import resize
+from skinnet.runtime import Decomposer
+
+LEAST_SIDE = 16
+
+Reader = Callable[[NDArray[np.uint8]], tuple[SkinMaps, Capture]]
+"""uint8 sRGB [height, width, 3] to maps [1, (3,) height, width] and the capture [1]."""
+
+
+class NetworkReader:
+    """A network with a photograph's longer side at its working size."""
+
+    def __init__(self, model: SkinAutoencoder):
+        self.model = model.eval()
+
+    @torch.no_grad()
+    def __call__(self, photograph: NDArray[np.uint8]) -> tuple[SkinMaps, Capture]:
+        height, width = photograph.shape[:2]
+        scale = self.model.config.working_size / max(height, width)
+        sides = (max(LEAST_SIDE, round(side * scale)) for side in (width, height))
+        small = torch.from_numpy(resize(photograph, *sides)).movedim(-1, 0)[None]
+        maps, capture = self.model.encode(small.float() / 255)
+        return resized(maps, height, width), capture
+
+
+class RuntimeReader:
+    """The runtime without torch, on all of the picture."""
+
+    def __init__(self, decomposer: Decomposer):
+        self.decomposer = decomposer
+
+    def __call__(self, photograph: NDArray[np.uint8]) -> tuple[SkinMaps, Capture]:
+        found = self.decomposer(photograph, whole_image=True)
+        maps = [torch.from_numpy(getattr(found, name))[None] for name in SkinMaps._fields]
+        maps[4] = maps[4].movedim(-1, 1)
+        *weights, temperature = found.light.values()
+        ratios = torch.tensor([list(found.camera["white_balance"].values())])
+        components = torch.tensor([found.camera["components"]])
+        light = torch.tensor([weights]), torch.tensor([temperature])
+        return SkinMaps(*maps), Capture(*light, components, ratios.log())
+
+
+def resized(maps: SkinMaps, height: int, width: int) -> SkinMaps:
+    """Maps of another size, bilinear, averaged where they shrink."""
+    channels = torch.cat([one if one.ndim == 4 else one[:, None] for one in maps], 1)
+    if channels.shape[-2:] != (height, width):
+        channels = F.interpolate(channels, (height, width), mode="bilinear", antialias=True)
+    melanin, hemoglobin, shading, specular, *offset, mask = channels.unbind(1)
+    return SkinMaps(melanin, hemoglobin, shading, specular, torch.stack(offset, 1), mask)
+
+
+def composed(maps: SkinMaps, capture: Capture, decoder: SkinDecoder) -> tuple[Tensor, Tensor]:
+    """Linear sRGB [1, 3, height, width] of the skin itself and of the photograph."""
+    matrix = decoder.camera.matrix(capture)
+    albedo = decoder.skin(maps.melanin, maps.hemoglobin, matrix)
+    white = matrix.sum(-2)[..., None, None]
+    gloss = maps.specular[:, None] * white
+    return albedo, maps.shading[:, None] * albedo + gloss + maps.offset
+
+
+class Encoder:
+    """A row of the table: pictures of the twin, one by one, by a reader."""
+
+    def __init__(self, reader: Reader, decoder: SkinDecoder):
+        self.reader, self.decoder = reader, decoder
+
+    def __call__(self, scene: Scene) -> Pixels:
+        pairs = zip(scene.photographs, scene.skin, strict=True)
+        parts = [self._read(photograph, skin[None]) for photograph, skin in pairs]
+        return Pixels(*(torch.cat(values) for values in zip(*parts, strict=True)))
+
+    @torch.no_grad()
+    def _read(self, photograph: NDArray[np.uint8], skin: Tensor) -> Pixels:
+        maps, capture = self.reader(photograph)
+        albedo, image = composed(maps, capture, self.decoder)
+        values = [on(one, skin) for one in (*maps[:4], albedo, image)]
+        return Pixels(*values, maps.mask > 0.5)

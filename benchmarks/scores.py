@@ -1,0 +1,105 @@
+"""The columns of the table: what a row's pixels are worth beside the truth."""
+
+from typing import Any
+
+import torch
+from torch import Tensor
+
+from benchmarks.moments import Moments
+from benchmarks.scene import Pixels, Scene, mean_by
+from benchmarks.typology import GROUPS, group
+from skinnet.autoencoder import F_MEL_MAX
+
+PIGMENTS = {"melanin": F_MEL_MAX, "hemoglobin": 0.07}
+"""The fractions that are 1 on BioFaceNet's look-up grid."""
+
+COLUMNS = {
+    "diffuse": "shading",
+    "specular": "specular",
+    "albedo": "albedo",
+    "reconstruction": "colour",
+}
+"""RMSE over skin by its name, and whose it is."""
+
+
+class Scores:
+    """Sums over the pictures that were added, and the columns they give."""
+
+    def __init__(self) -> None:
+        self.pixel, self.image, self.grid = (
+            {name: Moments() for name in PIGMENTS} for _ in range(3)
+        )
+        self.columns = {name: Moments() for name in COLUMNS}
+        self.groups = {name: Moments() for name in GROUPS}
+        self.pictures = dict.fromkeys(GROUPS, 0)
+        self.leak = Moments()
+        self.overlap: Tensor | None = torch.zeros(2, dtype=torch.float64)
+
+    def add(self, guess: Pixels, scene: Scene) -> None:
+        """Count in a row's pixels of some pictures."""
+        truth = scene.truth
+        for name, most in PIGMENTS.items():
+            both = getattr(guess, name), getattr(truth, name)
+            self.pixel[name].add(*both)
+            self.grid[name].add(*(2 * (one.double() / most) ** (1 / 3) - 1 for one in both))
+            by_picture = [mean_by(one, scene.picture, len(scene.angle)) for one in both]
+            seen = by_picture[1].isfinite()
+            self.image[name].add(*(one[seen] for one in by_picture))
+        for name, field in COLUMNS.items():
+            if getattr(guess, field) is not None:
+                self.columns[name].add(getattr(guess, field), getattr(truth, field))
+        assert truth.shading is not None
+        self.leak.add(guess.melanin - truth.melanin, truth.shading)
+        self._add_groups(guess, scene)
+        self._add_mask(guess.mask, scene.skin)
+
+    def _add_groups(self, guess: Pixels, scene: Scene) -> None:
+        for number, angle in enumerate(scene.angle.tolist()):
+            here = scene.picture == number
+            if here.any():
+                self.pictures[group(angle)] += 1
+                self.groups[group(angle)].add(guess.melanin[here], scene.truth.melanin[here])
+
+    def _add_mask(self, guess: Tensor | None, skin: Tensor) -> None:
+        if guess is None or self.overlap is None:
+            self.overlap = None
+        else:
+            self.overlap += torch.stack([(guess & skin).sum(), (guess | skin).sum()]).double()
+
+    def results(self, constant: "Scores") -> dict[str, Any]:
+        """Every column; `constant` has the scores of the constant predictor."""
+        relative = [one["relative_rmse"] for one in self.by_group().values()]
+        return {
+            **{name: self._pigment(name, constant) for name in PIGMENTS},
+            **{name: moments.rmse for name, moments in self.columns.items()},
+            "mask_iou": None if self.overlap is None else _ratio(*self.overlap.tolist()),
+            "leak": self.leak.r,
+            "group_ratio": _ratio(max(relative), min(relative)) if relative else None,
+        }
+
+    def _pigment(self, name: str, constant: "Scores") -> dict[str, float | None]:
+        rmse, other = self.pixel[name].rmse, constant.pixel[name].rmse
+        return {
+            "rmse": rmse,
+            "rmse_ratio": None if rmse is None or other is None else _ratio(rmse, other),
+            "r_pixel": self.pixel[name].r,
+            "r_image": self.image[name].r,
+            "grid_rmse": self.grid[name].rmse,
+        }
+
+    def by_group(self) -> dict[str, dict[str, Any]]:
+        """Melanin by skin tone: pictures, mean of the truth, RMSE, and RMSE over that mean."""
+        found = {}
+        for name, moments in self.groups.items():
+            if moments.rmse is not None and moments.truth:
+                found[name] = {
+                    "pictures": self.pictures[name],
+                    "mean": moments.truth,
+                    "rmse": moments.rmse,
+                    "relative_rmse": moments.rmse / moments.truth,
+                }
+        return found
+
+
+def _ratio(over: float, under: float) -> float | None:
+    return over / under if under else None

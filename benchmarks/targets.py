@@ -1,0 +1,102 @@
+"""What is asked of the encoder, and its figures laid out beside that."""
+
+from collections.abc import Iterator, Mapping
+from typing import Any
+
+ROWS = ("constant", "lookup", "ica", "stage1", "stage2")
+
+ASKED: dict[str, Any] = {
+    "melanin": {
+        "rmse_ratio": "<= 0.25",
+        "r_pixel": ">= 0.93",
+        "r_image": ">= 0.98",
+        "grid_rmse": "<= 0.30",
+    },
+    "hemoglobin": {
+        "rmse_ratio": "<= 0.5",
+        "r_pixel": ">= 0.80",
+        "r_image": ">= 0.90",
+        "grid_rmse": "<= 0.25",
+    },
+    "reconstruction": "<= 0.03",
+    "mask_iou": ">= 0.93",
+    "leak": "|.| <= 0.15",
+    "group_ratio": "<= 1.6",
+    "portraits": {
+        "reconstruction": "<= 0.04",
+        "stability": {"melanin": "<= 0.10", "hemoglobin": "<= 0.20"},
+        "ita_rank": "|.| >= 0.9",
+    },
+}
+"""Of stage 2, which is also to be better than every baseline in every column."""
+
+HIGHER = ("r_pixel", "r_image", "mask_iou")
+"""Columns in which more is better; of the others, what is nearer to zero."""
+
+
+def flat(results: Mapping[str, Any], prefix: str = "") -> Iterator[tuple[str, Any]]:
+    """Figures by their path."""
+    for name, value in results.items():
+        if isinstance(value, Mapping):
+            yield from flat(value, f"{prefix}{name}.")
+        else:
+            yield prefix + name, value
+
+
+def not_beaten(results: Mapping[str, Any]) -> list[str]:
+    """ROW.COLUMN wherever a baseline is as good as stage 2 or better."""
+    best = dict(flat(results["stage2"] or {}))
+    return [
+        f"{row}.{column}"
+        for row in ROWS[:3]
+        for column, value in flat(results[row])
+        if value is not None and best.get(column) is not None
+        if _worth(column, value) >= _worth(column, best[column])
+    ]
+
+
+def _worth(column: str, value: float) -> float:
+    return value if column.endswith(HIGHER) else -abs(value)
+
+
+def layout(results: Mapping[str, Any]) -> str:
+    """The rows as columns of text, what is asked on the right, then all else line by line."""
+    table = {row: dict(flat(results[row] or {})) for row in ROWS}
+    asked = dict(flat(results["asked"]))
+    names = list(dict.fromkeys(name for row in table.values() for name in row))
+    lines = [_line("", [*ROWS, "asked"])]
+    for name in names:
+        cells = [_cell(table[row].get(name)) for row in ROWS]
+        lines.append(_line(name, [*cells, asked.get(name, "")]))
+    lines += ["", *_groups(results["groups"]), ""]
+    rest = {name: results[name] for name in ("portraits", "not_beaten", "settings")}
+    for name, value in flat(rest):
+        wanted = asked.get(name, asked.get(_without_disturbance(name), ""))
+        lines.append(f"{name:44}{_cell(value):>9}  {wanted}".rstrip())
+    return "\n".join(lines)
+
+
+def _groups(groups: Mapping[str, Any]) -> list[str]:
+    """RMSE of melanin relative to its mean, by skin tone."""
+    tones = next(iter(groups.values()))
+    lines = [_line("melanin, relative rmse", ["pictures", "mean", *groups])]
+    for tone, one in tones.items():
+        cells = [_cell(row[tone]["relative_rmse"]) for row in groups.values()]
+        lines.append(_line(tone, [_cell(one["pictures"]), _cell(one["mean"]), *cells]))
+    return lines
+
+
+def _without_disturbance(name: str) -> str:
+    """portraits.stability.mirror.melanin to portraits.stability.melanin."""
+    parts = name.split(".")
+    return ".".join(parts[:2] + parts[3:]) if len(parts) > 3 else name
+
+
+def _line(name: str, cells: list[str]) -> str:
+    return f"{name:22}" + "".join(f"{cell:>13}" for cell in cells).rstrip()
+
+
+def _cell(value: Any) -> str:
+    if value is None:
+        return "-"
+    return f"{value:.4f}" if isinstance(value, float) else str(value)

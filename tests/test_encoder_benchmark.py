@@ -1,0 +1,197 @@
+"""The encoder's benchmark: its contract, its measures, and its baselines where they must work."""
+
+import json
+from pathlib import Path
+from typing import Any
+
+import colour
+import numpy as np
+import pytest
+import torch
+from PIL import Image
+from skimage.data import astronaut
+
+from benchmarks import disturbances, encoder, portraits, targets
+from benchmarks.baselines import Lookup, Tsumura
+from benchmarks.moments import Moments
+from benchmarks.reader import NetworkReader, composed
+from benchmarks.scene import Pixels, Scene, under_daylight
+from benchmarks.scores import Scores
+from benchmarks.typology import GROUPS, group, typology_angle
+from skinnet.autoencoder import AutoencoderConfig, SkinAutoencoder, SkinMaps
+from skinnet.camera import SpectralCamera
+from skinnet.decoder import SkinDecoder
+
+PIGMENT = {"rmse", "rmse_ratio", "r_pixel", "r_image", "grid_rmse"}
+COLUMNS = {"diffuse", "specular", "albedo", "reconstruction", "mask_iou", "leak", "group_ratio"}
+TINY = {
+    **{"size": 32, "heads": 2, "samples": 4, "train_size": 32, "train_heads": 1},
+    **{"train_samples": 2, "ict": None, "batch_size": 2, "portraits": "nowhere"},
+}
+
+
+@pytest.fixture(scope="module")
+def model() -> SkinAutoencoder:
+    torch.manual_seed(0)
+    return SkinAutoencoder(AutoencoderConfig(widths=(4, 8), working_size=32)).eval()
+
+
+@pytest.fixture(scope="module")
+def found(model: SkinAutoencoder, tmp_path_factory: pytest.TempPathFactory) -> dict[str, Any]:
+    geometry = tmp_path_factory.mktemp("geometry")
+    return encoder.measure(encoder.TestSet(**TINY, geometry=str(geometry)), {"stage2": model})
+
+
+@pytest.fixture(scope="module")
+def skins() -> Scene:
+    """Six even skins, ever darker, without shading or gloss, as their true colour shows them."""
+    melanin = torch.logspace(-1.9, -0.6, 6).repeat_interleave(16)
+    hemoglobin = torch.full_like(melanin, 0.04)
+    albedo = under_daylight(melanin, hemoglobin, SkinDecoder())
+    one = torch.ones_like(melanin)
+    mask = torch.ones(6, 4, 4, dtype=torch.bool)
+    truth = Pixels(melanin, hemoglobin, one, 0 * one, albedo, albedo, mask)
+    angle = typology_angle(albedo[::16])
+    return Scene(np.zeros((6, 4, 4, 3), np.uint8), truth, mask.nonzero()[:, 0], angle)
+
+
+def test_its_keys_are_the_contract(found: dict[str, Any]) -> None:
+    for row in ("constant", "lookup", "ica", "stage2"):
+        assert set(found[row]) == {"melanin", "hemoglobin", *COLUMNS}
+        assert set(found[row]["melanin"]) == set(found[row]["hemoglobin"]) == PIGMENT
+    assert found["stage1"] is None and found["portraits"] is None
+    assert found["constant"]["melanin"]["rmse_ratio"] == 1
+    assert found["constant"]["melanin"]["r_pixel"] is None
+    assert all(value is not None for _, value in targets.flat(found["stage2"]))
+    assert json.loads(json.dumps(found, allow_nan=False))["settings"]["samples"] == 4
+    assert found["settings"]["weights"] == {}
+
+
+def test_its_table_has_a_line_a_column_with_what_is_asked(found: dict[str, Any]) -> None:
+    lines = {line.split()[0]: line.split() for line in targets.layout(found).splitlines() if line}
+    assert lines["melanin.r_image"][-2:] == [">=", "0.98"]
+    assert lines["diffuse"][4] == "-" and len(lines["diffuse"]) == 6
+
+
+def test_perfect_predictions_have_no_error(skins: Scene) -> None:
+    scores = Scores()
+    scores.add(skins.truth, skins)
+    results = scores.results(scores)
+    for name in ("diffuse", "specular", "albedo", "reconstruction"):
+        assert results[name] == 0
+    assert results["melanin"]["rmse"] == results["melanin"]["grid_rmse"] == 0
+    assert results["melanin"]["r_pixel"] == pytest.approx(1)
+    assert results["melanin"]["r_image"] == pytest.approx(1)
+    assert results["mask_iou"] == 1 and results["leak"] is None
+
+
+def test_shading_read_as_melanin_is_a_leak(skins: Scene) -> None:
+    shading = torch.rand(len(skins.picture), generator=torch.Generator().manual_seed(0))
+    lit = skins._replace(truth=skins.truth._replace(shading=shading))
+    scores = Scores()
+    scores.add(lit.truth._replace(melanin=lit.truth.melanin - 0.01 * shading), lit)
+    assert scores.results(scores)["leak"] == pytest.approx(-1)
+
+
+def test_moments_are_numpy_s() -> None:
+    x, y = np.random.default_rng(0).normal(0.1, 0.02, (2, 3, 100))
+    y = x + 0.5 * y
+    moments = Moments()
+    for a, b in zip(x, y, strict=True):
+        moments.add(torch.from_numpy(a), torch.from_numpy(b))
+    assert moments.r == pytest.approx(np.corrcoef(x.ravel(), y.ravel())[0, 1])
+    assert moments.rmse == pytest.approx(np.sqrt(np.mean((x - y) ** 2)))
+    assert moments.line == pytest.approx(tuple(np.polyfit(x.ravel(), y.ravel(), 1)))
+    assert Moments().rmse is None and Moments().r is None
+
+
+def test_typology_angle_is_that_of_colour_science() -> None:
+    linear = np.random.default_rng(0).uniform(0.002, 0.9, (50, 3))
+    xyz = colour.RGB_to_XYZ(linear, "sRGB", apply_cctf_decoding=False)
+    lightness, _, b = colour.XYZ_to_Lab(xyz, colour.CCS_ILLUMINANTS[
+        "CIE 1931 2 Degree Standard Observer"]["D65"]).T  # fmt: skip
+    expected = np.rad2deg(np.arctan2(lightness - 50, b))
+    assert np.abs(typology_angle(torch.from_numpy(linear)).numpy() - expected).max() < 0.2
+    assert [group(angle) for angle in (60, 50, 30, 20, 0, -50)] == list(GROUPS)
+
+
+def test_baselines_sort_plain_skins(skins: Scene) -> None:
+    decoder = SkinDecoder()
+    lookup, ica = Lookup(decoder), Tsumura(decoder)
+    ica.learn(skins)
+    by_table, by_directions = lookup(skins), ica(skins)
+    assert torch.allclose(by_table.melanin, skins.truth.melanin, atol=2e-3)
+    assert torch.allclose(by_table.hemoglobin, skins.truth.hemoglobin, atol=2e-3)
+    assert (by_directions.melanin[::16].diff() > 0).all()
+
+
+def test_the_table_groups_all_tones(skins: Scene) -> None:
+    scores = Scores()
+    scores.add(skins.truth._replace(melanin=1.1 * skins.truth.melanin), skins)
+    groups = scores.by_group()
+    assert sum(one["pictures"] for one in groups.values()) == 6 and len(groups) >= 4
+    assert all(one["relative_rmse"] == pytest.approx(0.1, rel=0.2) for one in groups.values())
+
+
+def test_a_photograph_is_composed_as_the_decoder_does(model: SkinAutoencoder) -> None:
+    photograph = astronaut()[:32, :32].copy()
+    maps, capture = NetworkReader(model)(photograph)
+    reading = model(torch.from_numpy(photograph).movedim(-1, 0)[None] / 255)
+    image = composed(maps, capture, model.decoder)[1]
+    assert torch.allclose(image, reading.reconstruction, atol=1e-5)
+    assert NetworkReader(model)(astronaut()[:50, :40].copy())[0].offset.shape == (1, 3, 50, 40)
+
+
+def constant_reader(photograph: np.ndarray) -> tuple[SkinMaps, Any]:
+    maps = [torch.full((1, *photograph.shape[:2]), 0.5 + 1e-3)] * 6
+    maps[0] = 0.1 * maps[0]
+    offset = torch.zeros(1, 3, *photograph.shape[:2])
+    return SkinMaps(*maps[:4], offset, maps[5]), SpectralCamera().standard((1,))
+
+
+def test_a_constant_reading_is_stable(tmp_path: Path) -> None:
+    for kind in ("congress", "london"):
+        (tmp_path / kind).mkdir()
+    Image.fromarray(astronaut()).save(tmp_path / "congress" / "a.jpg")
+    found = portraits.measure_portraits(tmp_path, constant_reader, SkinDecoder())
+    assert {"reconstruction", "stability", "ita_rank"} <= set(found)
+    assert set(found["stability"]) == {
+        *("exposure_up", "exposure_down", "cooler", "warmer", "jpeg_40", "half_size", "mirror")
+    }
+    for change in found["stability"].values():
+        assert change == pytest.approx({"melanin": 0, "hemoglobin": 0}, abs=1e-6)
+    assert 0 < found["reconstruction"] < 1 and found["ita_rank"] is None
+
+
+def test_disturbances_do_what_they_say() -> None:
+    photograph = np.full((20, 30, 3), 100, np.uint8)
+    changed = {name: change(photograph) for name, change in disturbances.DISTURBANCES.items()}
+    assert changed["exposure_up"].mean() > 130 and changed["exposure_down"].mean() < 80
+    assert changed["half_size"].shape == (10, 15, 3)
+    red, _, blue = changed["warmer"][0, 0].astype(int)
+    assert red > 100 > blue
+    red, _, blue = changed["cooler"][0, 0].astype(int)
+    assert red < 100 < blue
+    x, y = colour.temperature.CCT_to_xy_CIE_D(7000)
+    white = colour.XYZ_to_RGB([x / y, 1, (1 - x - y) / y], "sRGB", apply_cctf_encoding=False)
+    x, y = colour.temperature.CCT_to_xy_CIE_D(6500)
+    before = colour.XYZ_to_RGB([x / y, 1, (1 - x - y) / y], "sRGB", apply_cctf_encoding=False)
+    assert disturbances.balance(7000.0) == pytest.approx(white / before, abs=0.01)
+
+
+def test_skins_are_measured_by_their_wall() -> None:
+    """Whatever the light, its colour and exposure are taken off with the wall's."""
+    melanin = torch.logspace(-1.7, -0.6, 6)
+    skin = under_daylight(melanin, torch.full_like(melanin, 0.04), SkinDecoder()).numpy()
+    light = np.random.default_rng(0).uniform(0.5, 1.5, (6, 3))
+    blank = np.zeros((1, 1, 3), np.uint8), np.ones((1, 1), bool)
+    measured = [
+        (
+            portraits.Portrait(
+                *blank, (rgb * one).astype(np.float32), (0.5 * one).astype(np.float32)
+            ),
+            m,
+        )
+        for rgb, one, m in zip(skin, light, melanin.tolist(), strict=True)
+    ]
+    assert portraits.ita_rank(measured) == pytest.approx(-1)
