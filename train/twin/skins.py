@@ -8,6 +8,7 @@
 import argparse
 import sys
 from collections.abc import Iterator, Sequence
+from functools import cache
 from pathlib import Path
 
 import numpy as np
@@ -15,7 +16,7 @@ import torch
 import torch.nn.functional as F
 from jaxtyping import Bool, Float
 from scipy.interpolate import LinearNDInterpolator
-from scipy.ndimage import binary_fill_holes, distance_transform_edt, gaussian_filter
+from scipy.ndimage import binary_fill_holes, distance_transform_edt
 
 from skinnet.appearance.hybrid import HybridModel
 from skinnet.errors import InputError
@@ -51,7 +52,7 @@ DAMPED = 0.7
 LARGEST = 1.2
 """Largest log factor."""
 
-NO_SKIN = ((0.34, 0.03, 0.23, 0.14), (0.35, 0.215, 0.30, 0.11), (0.08, -0.44, 0.12, 0.06),
+NO_SKIN = ((0.34, 0.03, 0.23, 0.14), (0.35, 0.21, 0.31, 0.14), (0.08, -0.44, 0.12, 0.06),
            (0.0, -0.66, 0.24, 0.02))  # fmt: skip
 """Azimuth, elevation and half widths of eyes, brows, nostrils and the line between the lips."""
 
@@ -110,7 +111,8 @@ def worn(
     """Log factors of a face's pigments, whole over `inside` and fading towards its border."""
     typical = np.median(fractions[:, weight > 0.5], axis=1)[:, None, None].clip(1e-4)
     log = np.log((fractions / typical).clip(np.exp(-LARGEST), np.exp(LARGEST)))
-    log = filled(log, weight, weight * (1 - lips))
+    # What is half brow or beard does not speak for the skin around.
+    log = filled(log, weight, weight**4 * (1 - lips))
     log -= DAMPED * blurred(log, inside * (1 - lips), BROAD)
     depth = (distance_transform_edt(np.pad(inside, 1))[1:-1, 1:-1] / FEATHER).clip(0, 1)
     border = depth**2 * (3 - 2 * depth)
@@ -133,7 +135,15 @@ def blurred(values: Charts, weight: Chart, width: float) -> Charts:
 
 
 def _bell(values: Charts, width: float) -> Charts:
-    return gaussian_filter(values, width, axes=(-2, -1), mode="constant")
+    # Two products are many times faster than a filter as wide as these.
+    down, across = (_taps(n, width) for n in values.shape[-2:])
+    return down @ values @ across
+
+
+@cache
+def _taps(count: int, width: float) -> Float[np.ndarray, "n n"]:
+    apart = np.arange(count)[:, None] - np.arange(count)
+    return np.exp(-((apart / width) ** 2) / 2) / (width * np.sqrt(2 * np.pi))
 
 
 def bare() -> tuple[Chart, Chart]:
