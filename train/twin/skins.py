@@ -7,7 +7,7 @@
 
 import argparse
 import sys
-from collections.abc import Iterator, Sequence
+from collections.abc import Sequence
 from functools import cache
 from pathlib import Path
 
@@ -47,10 +47,15 @@ BROAD = 24.0
 """Standard deviation in texels, a third of the face across, of what is taken for shading."""
 
 DAMPED = 0.7
-"""Share of the broad changes that is taken away: portraits' shading reads as pigment."""
+"""Share of the broad changes, and of what the mean face has already, that is taken away: portraits'
+shading reads as pigment, and lies in the same places in all of them."""
 
-LARGEST = 1.2
-"""Largest log factor."""
+FLOOR = 0.5
+"""Share of the mean face's pigment that is added before logarithms are taken: a drawn face near or
+below 0 would be all contrast."""
+
+LARGEST = 0.8
+"""Largest log factor, approached smoothly."""
 
 NO_SKIN = ((0.34, 0.03, 0.23, 0.14), (0.35, 0.21, 0.31, 0.14), (0.08, -0.44, 0.12, 0.06),
            (0.0, -0.66, 0.24, 0.02))  # fmt: skip
@@ -79,20 +84,24 @@ def draw_skins(
     if weight.mean() < 0.05:
         raise InputError("The model knows hardly any texel of the face; was it made elsewhere?")
     inside = binary_fill_holes(known > 0.5)
-    faces = (worn(face, weight, lips, inside) for face in _drawn(model, place, count, seed, spread))
-    melanin, blood = np.stack(list(faces), 1).astype(np.float16)
-    return Skins(melanin, blood)
+    mean = _sampled_face(model, np.zeros(len(model.statistics.variances)), place)
+    floor = FLOOR * np.median(mean[:, weight > 0.5], axis=1).clip(1e-3)[:, None, None]
+    usual = DAMPED * (1 - lips) * log_factors(mean, floor, weight, lips)
+    charts = np.empty((2, count, *CHART), np.float16)
+    for index, beta in enumerate(spread * model.sample(count, seed)):
+        face = log_factors(_sampled_face(model, beta, place), floor, weight, lips)
+        charts[:, index] = worn(face - usual, lips, inside)
+    return Skins(*charts)
 
 
-def _drawn(
-    model: HybridModel, place: Place, count: int, seed: int, spread: float
-) -> Iterator[Float[np.ndarray, "pigments rows columns"]]:
-    """Fractions [2, rows, columns] of melanin and blood of each face on the chart."""
-    for beta in spread * model.sample(count, seed):
-        features, share = shrunk(model.texture(beta), TEXELS)
-        layers = np.stack([features[1] * share, features[0] * share, share])
-        mel, blood, seen = _sampled(layers, place)
-        yield np.stack([mel, blood]) / np.maximum(seen, 1e-3)
+def _sampled_face(
+    model: HybridModel, beta: Float[np.ndarray, "components"], place: Place
+) -> Float[np.ndarray, "pigments rows columns"]:
+    """Fractions of melanin and blood of a face on the chart."""
+    features, share = shrunk(model.texture(beta), TEXELS)
+    layers = np.stack([features[1] * share, features[0] * share, share])
+    mel, blood, seen = _sampled(layers, place)
+    return np.stack([mel, blood]) / np.maximum(seen, 1e-3)
 
 
 def _sampled(layers: Charts, place: Place) -> Charts:
@@ -102,18 +111,27 @@ def _sampled(layers: Charts, place: Place) -> Charts:
     return F.grid_sample(texture, torch.from_numpy(grid)[None], align_corners=False)[0].numpy()
 
 
-def worn(
+def log_factors(
     fractions: Float[np.ndarray, "pigments rows columns"],
+    floor: Float[np.ndarray, "pigments 1 1"],
     weight: Chart,
+    lips: Chart,
+) -> Float[np.ndarray, "pigments rows columns"]:
+    """Logarithms over the face's median, what does not weigh filled from around."""
+    typical = np.median(fractions[:, weight > 0.5], axis=1)[:, None, None]
+    log = np.log((fractions + floor) / (typical + floor))
+    # What is half brow or beard does not speak for the skin around.
+    return filled(log, weight, weight**4 * (1 - lips))
+
+
+def worn(
+    log: Float[np.ndarray, "pigments rows columns"],
     lips: Chart,
     inside: Bool[np.ndarray, "rows columns"],
 ) -> Float[np.ndarray, "pigments rows columns"]:
-    """Log factors of a face's pigments, whole over `inside` and fading towards its border."""
-    typical = np.median(fractions[:, weight > 0.5], axis=1)[:, None, None].clip(1e-4)
-    log = np.log((fractions / typical).clip(np.exp(-LARGEST), np.exp(LARGEST)))
-    # What is half brow or beard does not speak for the skin around.
-    log = filled(log, weight, weight**4 * (1 - lips))
-    log -= DAMPED * blurred(log, inside * (1 - lips), BROAD)
+    """Log factors without what is broad, of mean 0, and fading towards the border of `inside`."""
+    log = log - DAMPED * blurred(log, inside * (1 - lips), BROAD)
+    log = LARGEST * np.tanh(log / LARGEST)
     depth = (distance_transform_edt(np.pad(inside, 1))[1:-1, 1:-1] / FEATHER).clip(0, 1)
     border = depth**2 * (3 - 2 * depth)
     mean = (log * border).sum((1, 2)) / border.sum()
