@@ -1,6 +1,6 @@
 """The twin's pictures are what the physics makes of their truth."""
 
-from collections.abc import Callable, Iterator
+from collections.abc import Callable
 from pathlib import Path
 
 import numpy as np
@@ -12,11 +12,12 @@ from torch.utils.data import default_collate
 from skinnet.autoencoder import F_BLOOD_MAX, F_MEL_MAX
 from skinnet.camera import SpectralCamera
 from skinnet.decoder import SkinDecoder, srgb
+from skinnet.spectra import cameras
 from train.batch import Batch
 from train.twin import camera
 from train.twin.faces import Lots, TwinFaces
 from train.twin.light import shade
-from train.twin.lot import draw_lot
+from train.twin.lot import MELANIN, draw_lot
 from train.twin.paint import paint_skin
 
 COUNT = 6
@@ -47,13 +48,11 @@ def made(data: TwinFaces, lot: Lot) -> Made:
     return lambda **changes: data.render(lot | changed(lot, changes), "train")
 
 
-@pytest.fixture(scope="module")
-def exact() -> Iterator[None]:
+@pytest.fixture
+def exact(monkeypatch: pytest.MonkeyPatch) -> None:
     """Lets every camera be the basis's mean, which a capture can say exactly."""
-    with pytest.MonkeyPatch.context() as patch:
-        mean = SpectralCamera().mean
-        patch.setattr(camera, "cameras", lambda: {str(n): mean for n in range(60)})
-        yield
+    means = dict.fromkeys(cameras(), SpectralCamera().mean)
+    monkeypatch.setattr(camera, "cameras", lambda: means)
 
 
 def changed(lot: Lot, changes: dict[str, float]) -> Lot:
@@ -168,7 +167,7 @@ def test_the_camera_keeps_shape_and_range(lot: Lot, size: tuple[int, int]) -> No
 
 def test_the_tone_curve_rises(lot: Lot) -> None:
     ramp = torch.linspace(0, 1, 64).expand(COUNT, 3, 8, 64)
-    toned = camera._toned(lot, ramp)
+    toned = camera.toned(lot, ramp)
     assert toned.shape == ramp.shape and (toned.diff(dim=-1) >= -1e-6).all()
 
 
@@ -179,6 +178,6 @@ def test_paint_covers_shares_of_the_chart(lot: Lot) -> None:
 
 
 def test_lots_cover_pale_and_dark_skin_evenly() -> None:
-    low, high = np.log(0.015), np.log(0.30)
+    low, high = np.log(MELANIN)
     drawn = [np.log(draw_lot(np.random.default_rng(n), 2)["f_mel"]) for n in range(100)]
     assert 0.38 < np.mean(np.array(drawn) < (low + high) / 2) < 0.62
