@@ -32,6 +32,7 @@ bench: $(READY)
 	$(BIN)/python -m benchmarks.appearance
 	$(BIN)/python -m benchmarks.full_resolution
 	$(BIN)/python -m benchmarks.encoder
+	$(BIN)/python -m benchmarks.identifiability
 
 wheel: $(READY)
 	$(BIN)/python -m build --wheel

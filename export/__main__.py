@@ -21,9 +21,14 @@ def main(arguments: Sequence[str] | None = None) -> int:
     )
     parser.add_argument("checkpoint", type=Path, help="a .ckpt of training, or .safetensors")
     parser.add_argument("-o", "--output", type=Path, default=Path("skin.onnx"), metavar="FILE")
+    parser.add_argument(
+        "--half",
+        action="store_true",
+        help="round the weights to half precision, in which .safetensors then holds them",
+    )
     options = parser.parse_args(arguments)
     try:
-        _export(options.checkpoint, options.output)
+        _export(options.checkpoint, options.output, options.half)
     except ModuleNotFoundError as error:
         print(f'export needs {error.name}: pip install -e ".[export]"', file=sys.stderr)
         return 2
@@ -33,7 +38,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
     return 0
 
 
-def _export(checkpoint: Path, output: Path) -> None:
+def _export(checkpoint: Path, output: Path, half: bool) -> None:
     # Imported here, so that --help does not wait for torch.
     from export.onnx_file import SIZES, export_model
     from skinnet.weights import save_weights
@@ -45,7 +50,13 @@ def _export(checkpoint: Path, output: Path) -> None:
     if not output.parent.is_dir():
         raise InputError(f"{output.parent} is not a folder; make it first.")
     model, trained_on = _load(checkpoint)
+    if half:
+        # Rounded before either file is made of them, so that both hold the same weights. The
+        # constants of the physics would not survive it.
+        model.encoder.half().float()
     reports = export_model(model, output, trained_on)
+    if half:
+        model.encoder.half()
     save_weights(model, output.with_suffix(".safetensors"), trained_on)
     sizes = ", ".join("x".join(map(str, size)) for size in SIZES)
     print(f"compared with torch at {sizes} (batch x height x width)")

@@ -84,6 +84,17 @@ def pigments(maps: SkinMaps, truth: SkinMaps) -> Scalar:
     return _mean(melanin.abs() + blood.abs(), truth.mask)
 
 
+def steadiness(maps: SkinMaps, mask: Map) -> Scalar:
+    """Mean absolute difference of both pigments between the halves of a batch, in cube roots.
+
+    The second half shows the photographs of the first in another exposure and white balance, and a
+    face keeps its pigments.
+    """
+    melanin, again = _root(maps.melanin, F_MEL_MAX).chunk(2)
+    blood, blood_again = _root(maps.hemoglobin, F_BLOOD_MAX).chunk(2)
+    return _mean((melanin - again).abs() + (blood - blood_again).abs(), mask.chunk(2)[0])
+
+
 def lighting(maps: SkinMaps, truth: SkinMaps) -> Scalar:
     """Mean absolute error of shading and offset, and ten times the squared one of root specular.
 

@@ -12,7 +12,8 @@ class Batch(NamedTuple):
     """Photographs in display sRGB [batch, 3, height, width], and what is known of them.
 
     `mask` is the skin mask, true or estimated. `truth`, `capture` and `albedo`, the linear sRGB of
-    the skin itself, are there for rendered portraits only.
+    the skin itself, are there for rendered portraits only. With `twice` the second half of the
+    batch shows the photographs of the first again, brighter or darker, warmer or colder.
     """
 
     photograph: Tensor
@@ -20,3 +21,4 @@ class Batch(NamedTuple):
     truth: SkinMaps | None = None
     capture: Capture | None = None
     albedo: Tensor | None = None
+    twice: bool = False

@@ -8,6 +8,7 @@ from pathlib import Path
 from typing import Any, NamedTuple
 
 import numpy as np
+import torch
 from jsonargparse.typing import NonNegativeInt, PositiveInt, restricted_number_type
 from lightning import LightningDataModule
 from lightning.pytorch.utilities import CombinedLoader, rank_zero_only
@@ -26,7 +27,7 @@ from train.twin.faces import Drawn, TwinFaces
 SUFFIXES = (".jpg", ".jpeg", ".png", ".tif", ".tiff", ".webp")
 Share = restricted_number_type("Share", float, [(">=", 0), ("<", 1)])
 
-EXPOSURE_SD, WHITE_BALANCE_SD = 0.25, 0.02
+EXPOSURE_SD, WHITE_BALANCE_SD = 0.4, 0.03
 """How much photographs vary in training, in logarithms: all of it, and red and blue to green."""
 
 
@@ -37,9 +38,17 @@ class Crop(NamedTuple):
     mask: NDArray[np.uint8]
 
 
-class Crops(Dataset[Crop]):
-    """Crops in an endless stream: every epoch has all of them, shuffled, mirrored, and brighter or
-    darker, warmer or colder, by its own number and the seed."""
+class Pair(NamedTuple):
+    """A crop seen twice, each time brighter or darker, warmer or colder."""
+
+    photograph: NDArray[np.uint8]
+    mask: NDArray[np.uint8]
+    again: NDArray[np.uint8]
+
+
+class Crops(Dataset[Pair]):
+    """Pairs in an endless stream: every epoch has all crops, shuffled, mirrored, and varied by its
+    own number and the seed."""
 
     def __init__(self, crops: list[Crop], seed: int):
         self.crops = crops
@@ -48,14 +57,15 @@ class Crops(Dataset[Crop]):
     def __len__(self) -> int:
         return len(self.crops)
 
-    def __getitem__(self, index: int) -> Crop:
+    def __getitem__(self, index: int) -> Pair:
         epoch, place = divmod(index, len(self.crops))
         lot = np.random.default_rng([self.seed, epoch])
         order = lot.permutation(len(self.crops))
         mirrored = lot.random(len(self.crops)) < 0.5
         crop = self.crops[order[place]]
         crop = Crop(*(part[:, ::-1].copy() for part in crop)) if mirrored[place] else crop
-        return varied(crop, np.random.default_rng([self.seed, epoch, place]))
+        draw = np.random.default_rng([self.seed, epoch, place])
+        return Pair(*varied(crop, draw), varied(crop, draw).photograph)
 
 
 def varied(crop: Crop, draw: np.random.Generator) -> Crop:
@@ -72,7 +82,8 @@ class Portraits(LightningDataModule):
 
     Unreadable pictures and pictures without a face are skipped, counted, and listed in
     `skipped.csv` of the run. Every step also sees a batch of `twin`, so that the maps keep their
-    meaning. Photographs vary in exposure and white balance while training, and only then.
+    meaning. In training each photograph is shown twice in different exposure and white balance, so
+    that what is read of it can be held to be the same.
 
     Args:
         folder: of the photographs, searched with its subfolders.
@@ -158,9 +169,11 @@ class Portraits(LightningDataModule):
         return CombinedLoader({"portraits": portraits, "twin": twin}, "min_size")
 
     def on_after_batch_transfer(self, batch: Any, dataloader_idx: int) -> dict[str, Batch]:
-        photograph, mask = (part.float() / 255 for part in batch["portraits"])
+        photograph, mask, *again = (part.float() / 255 for part in batch["portraits"])
+        shown = torch.cat([photograph, *again]).movedim(-1, 1)
+        masks = torch.cat([mask] * (1 + len(again)))
         twin = self.twin.on_after_batch_transfer(batch["twin"], dataloader_idx)
-        return {"portraits": Batch(photograph.movedim(-1, 1), mask), "twin": twin}
+        return {"portraits": Batch(shown, masks, twice=bool(again)), "twin": twin}
 
 
 class Skipped(NamedTuple):

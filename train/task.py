@@ -13,7 +13,8 @@ from torch.optim import AdamW, Optimizer
 from torch.optim.lr_scheduler import LambdaLR
 
 from skinnet import losses
-from skinnet.autoencoder import AutoencoderConfig, Reading, SkinAutoencoder
+from skinnet.autoencoder import AutoencoderConfig, Reading, SkinAutoencoder, SkinMaps
+from skinnet.capture import Capture
 from skinnet.checkpoint import describe
 from skinnet.encoder import WIDTHS
 from skinnet.errors import InputError
@@ -27,13 +28,14 @@ Batches = Batch | dict[str, Batch]
 
 @dataclass
 class LossWeights:
-    """Weight of each loss. The first four count on every picture, pigments, lighting and white
-    balance where there is truth, and the priors, which stand in for it, where there is none."""
+    """Weight of each loss. The first three count on every picture; mask, pigments, lighting and
+    white balance where there is truth; a guessed mask, steadiness and the priors, which stand in
+    for it, where there is none."""
 
     appearance: NonNegativeFloat = 4.0
     elsewhere: NonNegativeFloat = 0.2
-    mask: NonNegativeFloat = 1.0
     offset: NonNegativeFloat = 2.0
+    mask: NonNegativeFloat = 1.0
     camera: NonNegativeFloat = 0.005
     specular: NonNegativeFloat = 0.01
     smoothness: NonNegativeFloat = 0.02
@@ -41,6 +43,8 @@ class LossWeights:
     pigments: NonNegativeFloat = 8.0
     lighting: NonNegativeFloat = 1.0
     white_balance: NonNegativeFloat = 0.5
+    steadiness: NonNegativeFloat = 4.0
+    mask_guess: NonNegativeFloat = 0.2
 
 
 class SkinTask(LightningModule):
@@ -124,15 +128,30 @@ class SkinTask(LightningModule):
         return readings
 
     def _losses(self, batch: Batches) -> tuple[dict[str, Reading], Tensor, dict[str, Tensor]]:
-        readings, parts = {}, {}
+        named, parts = by_name(batch), {}
         total = torch.zeros((), device=self.device)
-        for name, part in by_name(batch).items():
-            readings[name] = self(part.photograph)
+        readings = self._read(named)
+        for name, part in named.items():
             with torch.autocast(part.photograph.device.type, enabled=False):
                 for term, value in terms(readings[name], part).items():
                     parts[f"{name}_{term}"] = value
                     total = total + getattr(self.weight_of, term) * value
         return readings, total, parts
+
+    def _read(self, batches: dict[str, Batch]) -> dict[str, Reading]:
+        """All kinds of pictures in one pass: batch normalisation would otherwise give each kind its
+        own statistics in training, and one mixture of them to both afterwards."""
+        counts = [len(part.photograph) for part in batches.values()]
+        whole = self(torch.cat([part.photograph for part in batches.values()]))
+        maps, capture = (
+            zip(*(one.split(counts) for one in some), strict=True) for some in whole[:2]
+        )
+        images = whole.reconstruction.split(counts)
+        readings = (
+            Reading(SkinMaps(*a), Capture(*b), c)
+            for a, b, c in zip(maps, capture, images, strict=True)
+        )
+        return dict(zip(batches, readings, strict=True))
 
     def configure_optimizers(self) -> dict[str, Any]:
         optimizer: Optimizer = AdamW(
@@ -167,16 +186,19 @@ def terms(reading: Reading, batch: Batch) -> dict[str, Tensor]:
     parts = {
         "appearance": losses.appearance(reading.reconstruction, linear, mask),
         "elsewhere": losses.appearance(reading.reconstruction, linear, 1 - mask),
-        "mask": losses.skin_mask(maps, mask),
         "offset": losses.offset_penalty(maps, mask),
     }
     if batch.truth is not None and batch.capture is not None:
         return parts | {
+            "mask": losses.skin_mask(maps, mask),
             "pigments": losses.pigments(maps, batch.truth),
             "lighting": losses.lighting(maps, batch.truth),
             "white_balance": losses.white_balance(reading.capture, batch.capture),
         }
+    if batch.twice:
+        parts["steadiness"] = losses.steadiness(maps, mask)
     return parts | {
+        "mask_guess": losses.skin_mask(maps, mask),
         "camera": losses.camera_prior(reading.capture),
         "specular": losses.specular_sparsity(maps, mask),
         "smoothness": losses.shading_smoothness(maps, mask),

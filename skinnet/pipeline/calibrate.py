@@ -22,7 +22,7 @@ from skinnet.optics import SkinOptics
 from skinnet.pipeline.progress import say
 from skinnet.reflectance import SkinReflectance
 
-WAYS = ("exposure", "full", "none")
+WAYS = ("exposure", "common", "full", "none")
 NODES = (256, 256)
 FEW = 5
 """Scans below which a full calibration cannot be trusted to have seen all kinds of skin."""
@@ -31,7 +31,7 @@ LOOSE = 0.03
 """Relative standard error of a transform that is worth a word."""
 
 SAMPLE = 100_000
-"""Colours of all scans together that a full calibration is given."""
+"""Colours of all scans together that a calibration of all of them is given."""
 
 Samples = list[Float[np.ndarray, "_ 3"]]
 Matrix = Float[np.ndarray, "wavelength 3"]
@@ -45,8 +45,9 @@ class ColourSettings:
         light: name of the light of the scans, or a CSV of wavelength in nm and power.
         camera: name of the camera, or a CSV of wavelength in nm and three sensitivities.
         optics: preset of the skin's constants.
-        calibration: exposure (one factor a scan), full (the paper's 3 x 3 transform, for scans of
-            all kinds of skin in one light), none, or a _calibration.json written before.
+        calibration: exposure (one factor a scan), common (one factor for all scans, of one light
+            and camera setting), full (the paper's 3 x 3 transform, for scans of all kinds of skin
+            in one light), none, or a _calibration.json written before.
         white: sRGB, 0 to 255, of something white or grey in the textures; their colours are divided
             by its tint. Without it they are taken to be balanced.
         f_mel: range of melanin in which is looked.
@@ -79,6 +80,7 @@ class ColourSettings:
         matrix = spectrum_matrix(self.light, self.camera).numpy()
         ways: dict[str, Callable[[], Calibrated]] = {
             "exposure": lambda: self._exposures(matrix, samples),
+            "common": lambda: self._common(matrix, samples),
             "full": lambda: self._full(matrix, samples),
             "none": lambda: Calibrated(np.eye(3), [1.0] * len(samples), {}),
         }
@@ -101,16 +103,24 @@ class ColourSettings:
         model = self._model_colours(matrix).reshape(-1, 3)
         return Calibrated(np.eye(3), [exposure(one, model, self.seed) for one in samples], {})
 
+    def _common(self, matrix: Matrix, samples: Samples) -> "Calibrated":
+        model = self._model_colours(matrix).reshape(-1, 3)
+        factor = exposure(self._pooled(samples), model, self.seed)
+        return Calibrated(np.eye(3), [factor] * len(samples), {})
+
+    def _pooled(self, samples: Samples) -> Float[np.ndarray, "colours 3"]:
+        """Some colours of every scan, as many of each."""
+        draw = np.random.default_rng(self.seed)
+        most = max(SAMPLE // len(samples), 1)
+        return np.concatenate([draw.permutation(one)[:most] for one in samples])
+
     def _full(self, matrix: Matrix, samples: Samples) -> "Calibrated":
         if len(samples) < FEW:
             say(
                 f"{len(samples)} scans hardly show all kinds of skin; the transform they give may "
                 "stretch one person over all of them."
             )
-        draw = np.random.default_rng(self.seed)
-        most = max(SAMPLE // len(samples), 1)
-        data = np.concatenate([draw.permutation(one)[:most] for one in samples])
-        found = calibrate(data, self._model_colours(matrix), self.seed)
+        found = calibrate(self._pooled(samples), self._model_colours(matrix), self.seed)
         if found.uncertainty > LOOSE:
             say(
                 f"these colours fix the transform to {found.uncertainty:.0%} only, however well "
@@ -126,8 +136,8 @@ class ColourSettings:
             transform = np.array(json.loads(path.read_text(encoding="utf-8"))["transform"], float)
         except (OSError, ValueError, KeyError, TypeError) as error:
             raise InputError(
-                f"calibration is exposure, full, none, or a .json written by skinnet maps; got "
-                f"{self.calibration!r}."
+                f"calibration is exposure, common, full, none, or a .json written by skinnet maps; "
+                f"got {self.calibration!r}."
             ) from error
         if transform.shape != (3, 3) or not np.isfinite(transform).all():
             raise InputError(f"{path} has no 3 x 3 transform.")

@@ -4,7 +4,7 @@ import pytest
 import torch
 
 from skinnet import losses
-from skinnet.autoencoder import SkinMaps
+from skinnet.autoencoder import F_MEL_MAX, SkinMaps
 from skinnet.capture import Capture
 
 
@@ -121,3 +121,18 @@ def test_gradients_are_finite_at_the_edges() -> None:
     )
     for gradient in torch.autograd.grad(total, guess, allow_unused=True):
         assert gradient is None or gradient.isfinite().all()
+
+
+def test_steadiness_compares_the_two_halves() -> None:
+    seen = SkinMaps(
+        *(torch.full((4, 6, 6), value) for value in (0.05, 0.04, 1.0, 0.0)),
+        torch.zeros(4, 3, 6, 6),
+        torch.ones(4, 6, 6),
+    )
+    mask = torch.ones(4, 6, 6)
+    assert losses.steadiness(seen, mask) == 0
+    other = seen.melanin.clone()
+    other[2] = 0.1
+    root = (0.1 / F_MEL_MAX) ** (1 / 3) - (0.05 / F_MEL_MAX) ** (1 / 3)
+    found = losses.steadiness(seen._replace(melanin=other), mask)
+    assert found == pytest.approx(root / 2, rel=1e-4)

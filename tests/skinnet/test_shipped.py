@@ -84,5 +84,6 @@ def test_edits_are_a_tan_and_a_flush(skin: np.ndarray) -> None:
 
 def test_the_shipped_files_are_in_the_package() -> None:
     names = {path.name for path in shipped_model().parent.iterdir()}
-    assert names == {"skin.onnx", "skin.decoder.onnx", "skin.safetensors", "MODEL_CARD.md"}
+    files = {"skin.onnx", "skin.decoder.onnx", "skin.safetensors"}
+    assert names == files | {"MODEL_CARD.md", "CHANGELOG.md"}
     assert Path(SHIPPED).is_file()

@@ -16,7 +16,15 @@ from skinnet.errors import InputError
 from skinnet.images import srgb_to_linear
 from train.callbacks import LastCheckpoint, PictureGrid
 from train.cli import main
-from train.portraits import Crop, Crops, Portraits, find_crops, varied
+from train.portraits import (
+    EXPOSURE_SD,
+    WHITE_BALANCE_SD,
+    Crop,
+    Crops,
+    Portraits,
+    find_crops,
+    varied,
+)
 
 
 def test_a_face_is_found_cropped_and_masked(tmp_path: Path) -> None:
@@ -140,8 +148,10 @@ def test_photographs_vary_by_seed_epoch_and_index_alone() -> None:
     np.testing.assert_array_equal(drawn[0], drawn[1])
     assert (np.array(drawn[0]) != drawn[2]).any()
     light = np.log(srgb_to_linear(np.array(drawn[0])[:, 0, 0]))
-    assert 0.15 < light[:, 1].std() < 0.4
-    assert 0.01 < (light[:, 0] - light[:, 1]).std() < 0.04
+    assert 0.7 * EXPOSURE_SD < light[:, 1].std() < 1.3 * EXPOSURE_SD
+    warmth = (light[:, 0] - light[:, 1]).std()
+    assert 0.7 * WHITE_BALANCE_SD < warmth < 1.3 * WHITE_BALANCE_SD
+    assert all((pair.photograph != pair.again).any() for pair in map(first.__getitem__, range(9)))
 
 
 def test_a_brighter_photograph_clips_and_keeps_its_mask() -> None:

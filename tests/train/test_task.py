@@ -26,7 +26,7 @@ def test_a_few_steps_lower_the_loss(batch: Make) -> None:
 
 def test_every_loss_has_a_weight_and_every_weight_a_loss(batch: Make) -> None:
     task, data = SkinTask(widths=[4, 8]), batch(2)
-    without = Batch(data.photograph, data.mask)
+    without = Batch(data.photograph, data.mask, twice=True)
     found = [set(terms(task(data.photograph), one)) for one in (data, without)]
     assert found[0] | found[1] == set(LossWeights.__dataclass_fields__)
 

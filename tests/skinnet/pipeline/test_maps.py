@@ -84,7 +84,7 @@ def test_a_scan_without_texture_is_refused(scans: Path, tmp_path: Path, refused:
     [
         ("--colour.light=moon", "no light 'moon'"),
         ("--colour.camera=Nikkon", "no camera 'Nikkon'"),
-        ("--colour.calibration=half", "calibration is exposure, full, none"),
+        ("--colour.calibration=half", "calibration is exposure, common, full, none"),
         ("--colour.white=[0,1,2]", "white is three numbers"),
         ("--warp.size=4", "size is a number of texels"),
     ],
