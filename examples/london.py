@@ -4,8 +4,9 @@
 Set (DeBruine and Jones, CC BY 4.0): NNN_03.jpg and NNN_03.tem with 189 landmarks each. The
 soft, even light of that studio stands in for a lightstage: shading and gloss that it leaves count
 as pigment here. Portraits are warped to their mean landmarks, calibrated together, inverted under
-D65 and the mean camera, and compared as in Figure 8. The pictures show real people and stay out of
-the project.
+D65 and the mean camera, and compared as in Figure 8. With `--skins 200` so many skins are drawn
+from the hybrid model for heads of the photometric twin, as skins.npz. The pictures show real people
+and stay out of the project.
 """
 
 import argparse
@@ -13,16 +14,22 @@ from collections.abc import Sequence
 from pathlib import Path
 
 import numpy as np
+from scipy.interpolate import RBFInterpolator
 from scipy.spatial import Delaunay
 from skimage.draw import polygon2mask, polygon_perimeter
 from skimage.morphology import dilation, disk, erosion
 
+from skinnet.appearance.hybrid import HybridModel
 from skinnet.appearance.mapsfile import save_maps
 from skinnet.cli import main as skinnet
 from skinnet.images import read_photo, srgb_to_linear
 from skinnet.pipeline.calibrate import ColourSettings
 from skinnet.pipeline.maps import invert
+from skinnet.shape.procedural import chart
 from skinnet.shape.warp import TextureSpace, Warped, warp_texture
+from train.twin.lot import CHART
+from train.twin.skinfile import save_skins
+from train.twin.skins import Place, draw_skins
 
 SIZE = 512
 MARGIN = 0.02
@@ -38,6 +45,22 @@ HOLES = (
     (87, 94, 95, 96, 97, 98, 93, 103, 102, 101, 100, 99),
 )
 """Eyes, brows, and the line between the lips."""
+
+PLACES = (
+    ((0, 1), (0.34, 0.02)), ((18, 27), (0.475, 0.02)), ((22, 23), (0.205, 0.0)),
+    ((71, 82), (0.58, 0.15)), ((74, 79), (0.34, 0.24)), ((76, 77), (0.13, 0.165)),
+    ((51, 57), (0.05, 0.03)), ((53, 59), (0.06, -0.16)), ((54, 60), (0.07, -0.32)),
+    ((63, 68), (0.14, -0.43)), ((170, 172), (0.065, -0.49)), ((87, 93), (0.205, -0.655)),
+    ((90, 90), (0.0, -0.600)), ((89, 91), (0.065, -0.588)), ((96, 96), (0.0, -0.66)),
+    ((106, 106), (0.0, -0.738)), ((175, 175), (0.0, -0.98)), ((129, 129), (0.0, -1.10)),
+    ((109, 112), (0.98, -0.04)), ((110, 113), (0.98, -0.42)), ((111, 114), (0.95, -0.62)),
+    ((126, 132), (0.95, -0.84)), ((136, 142), (0.72, 0.62)), ((139, 139), (0.0, 0.78)),
+)  # fmt: skip
+"""Landmarks on both sides of the face, and their azimuth and elevation on the twin's chart, where
+they are told apart by the direction seen from the middle of a head."""
+
+FRONTAL = 1.15
+"""Azimuth in radians beyond which a portrait from ahead shows nothing."""
 
 
 def landmarks(path: Path) -> np.ndarray:
@@ -89,12 +112,45 @@ def textures(folder: Path) -> tuple[list[Path], list[np.ndarray], np.ndarray]:
     return files, images, mask
 
 
+def chart_place(mean: np.ndarray) -> Place:
+    """Texture coordinates in the frame of mean landmarks for each texel of the twin's chart.
+
+    A thin-plate spline starts from directions seen from ahead, as the frame is, so that it has
+    little to bend.
+    """
+    marks = np.array([pair for pair, _ in PLACES])
+    right = np.array([place for _, place in PLACES])
+    places = np.concatenate([right * [-1, 1], right])
+    points = mean[np.concatenate([marks[:, 0], marks[:, 1]])]
+    places, once = np.unique(places.round(9) + 0.0, axis=0, return_index=True)
+    spline = RBFInterpolator(_ahead(places), points[once], smoothing=1e-4)
+    azimuth, elevation = (axis.double().numpy() for axis in chart(*CHART))
+    texels = np.stack(np.broadcast_arrays(azimuth, elevation), -1)
+    found = spline(_ahead(texels).reshape(-1, 2)).reshape(*CHART, 2)
+    return np.where(np.abs(azimuth)[..., None] < FRONTAL, found, np.nan)
+
+
+def _ahead(places: np.ndarray) -> np.ndarray:
+    """Unit vectors of azimuths and elevations, seen from ahead."""
+    azimuth, elevation = places[..., 0], places[..., 1]
+    return np.stack([np.cos(elevation) * np.sin(azimuth), np.sin(elevation)], -1)
+
+
+def write_skins(portraits: Path, output: Path, count: int) -> None:
+    """Draw skins for the twin from the hybrid model in that folder."""
+    mean = frame([landmarks(file) for file in sorted(portraits.glob("*.tem"))])
+    model = HybridModel.load(output / "model" / "hybrid.npz")
+    save_skins(output / "skins.npz", draw_skins(model, chart_place(mean), count))
+    print(f"{output / 'skins.npz'}: {count} skins for heads of the twin")
+
+
 def main() -> None:
     """Write the portraits' maps, then build and measure the models."""
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("portraits", type=Path)
     parser.add_argument("-o", "--output", type=Path, default=Path("runs/london"))
     parser.add_argument("--calibration", default="full", help="full, exposure or none")
+    parser.add_argument("--skins", type=int, default=0, help="skins to draw for the twin's heads")
     options = parser.parse_args()
     maps = options.output / "maps"
     maps.mkdir(parents=True, exist_ok=True)
@@ -110,6 +166,8 @@ def main() -> None:
     for effect in ("false", "true"):
         output = options.output / ("model" if effect == "false" else "model_effect")
         skinnet(["build-model", str(maps), "-o", str(output), f"--model.effect={effect}"])
+    if options.skins:
+        write_skins(options.portraits, options.output, options.skins)
 
 
 if __name__ == "__main__":

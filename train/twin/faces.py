@@ -17,6 +17,7 @@ from train.stream import StreamLoader, seen_samples
 from train.twin.cache import SPLITS, geometry
 from train.twin.lot import draw_lot
 from train.twin.picture import render
+from train.twin.skinfile import Skins, draw_skin, load_skins
 from train.twin.views import Buffers
 
 STAGES = {"fit": ("train", "val"), "validate": ("val",), "test": ("test",)}
@@ -28,11 +29,14 @@ Drawn = dict[str, NDArray[Any]]
 class Lots(Dataset[Drawn]):
     """Heads with a lot each, drawn from (seed, split, index): the same on every machine.
 
-    Heads take turns, so that a set as large as their number, or a multiple, has each as often.
+    Heads take turns, so that a set as large as their number, or a multiple, has each as often. With
+    `skins`, half of the pictures wear one; all else in them is what it is without.
     """
 
-    def __init__(self, heads: Drawn, split: str, samples: int, seed: int):
-        self.heads, self.samples = heads, samples
+    def __init__(
+        self, heads: Drawn, split: str, samples: int, seed: int, skins: Skins | None = None
+    ):
+        self.heads, self.samples, self.skins = heads, samples, skins
         self.key = (seed, SPLITS[split], 7)
 
     def __len__(self) -> int:
@@ -41,7 +45,11 @@ class Lots(Dataset[Drawn]):
     def __getitem__(self, index: int) -> Drawn:
         count, size = self.heads["label"].shape[:2]
         buffers = {name: value[index % count] for name, value in self.heads.items()}
-        return {**buffers, **draw_lot(np.random.default_rng([*self.key, index]), size)}
+        lot = draw_lot(np.random.default_rng([*self.key, index]), size)
+        if self.skins is not None:
+            # Draws of its own, so that lots are the same with skins and without.
+            lot |= draw_skin(np.random.default_rng([*self.key, index, 1]), self.skins)
+        return {**buffers, **lot}
 
 
 class TwinFaces(LightningDataModule):
@@ -62,6 +70,8 @@ class TwinFaces(LightningDataModule):
         test_samples: pictures of the test set.
         ict: ICT-FaceKit's model as an .npz; without it all heads are procedural.
         geometry: folder in which the heads are kept.
+        skins: .npz of `python -m train.twin.skins` or `examples/london.py`, skins drawn from a
+            hybrid model; half of the pictures then wear one. Without it skins are painted only.
         seed: of everything that is drawn.
         workers: processes that draw pictures; 0 draws them in the training process.
     """
@@ -78,6 +88,7 @@ class TwinFaces(LightningDataModule):
         test_samples: PositiveInt = 512,
         ict: str | None = None,
         geometry: str = "runs/geometry",
+        skins: str | None = None,
         seed: NonNegativeInt = 0,
         workers: NonNegativeInt = 0,
     ):
@@ -87,6 +98,8 @@ class TwinFaces(LightningDataModule):
         self.samples = {"train": train_samples, "val": val_samples, "test": test_samples}
         self.ict = None if ict is None else Path(ict)
         self.geometry, self.seed, self.workers = Path(geometry), seed, workers
+        self.skins_file = None if skins is None else Path(skins)
+        self.skins: Skins | None = None
         self.decoder = SkinDecoder()
         self.buffers: dict[str, Drawn] = {}
 
@@ -94,7 +107,8 @@ class TwinFaces(LightningDataModule):
     def described(self) -> str:
         """What a model card says of these data."""
         kind = "procedural heads" if self.ict is None else "ICT-FaceKit and procedural heads"
-        return f"{self.heads['train']} {kind} of skinnet's twin, seed {self.seed}, {self.size} px"
+        said = f"{self.heads['train']} {kind} of skinnet's twin, seed {self.seed}, {self.size} px"
+        return said if self.skins_file is None else f"{said}, half with skins of {self.skins_file}"
 
     def prepare_data(self) -> None:
         """Cast the heads that are missing; of several processes on a machine, one does."""
@@ -104,6 +118,8 @@ class TwinFaces(LightningDataModule):
 
     def setup(self, stage: str) -> None:
         """Read the heads that a stage needs, or cast them: fit, validate or test."""
+        if self.skins is None and self.skins_file is not None:
+            self.skins = load_skins(self.skins_file)
         for split in STAGES[stage]:
             if split not in self.buffers:
                 cast = self._cast(split)
@@ -119,7 +135,7 @@ class TwinFaces(LightningDataModule):
     def stream(self, steps: int, trainer: Trainer | None) -> StreamLoader:
         """Training pictures in epochs of that many steps, from where the trainer stands."""
         samples = max(steps, 1) * self.batch_size
-        lots = Lots(self.buffers["train"], "train", samples, self.seed)
+        lots = Lots(self.buffers["train"], "train", samples, self.seed, self.skins)
         seen = partial(seen_samples, trainer, self.batch_size)
         return StreamLoader(lots, self.batch_size, samples, seen, self.workers)
 
@@ -139,5 +155,5 @@ class TwinFaces(LightningDataModule):
         return render(lot, self.decoder.to(lot["f_mel"].device), split)
 
     def _fixed(self, split: str) -> DataLoader[Drawn]:
-        lots = Lots(self.buffers[split], split, self.samples[split], self.seed)
+        lots = Lots(self.buffers[split], split, self.samples[split], self.seed, self.skins)
         return DataLoader(lots, self.batch_size, num_workers=self.workers)

@@ -18,6 +18,9 @@ WHITE_BALANCE_SD = 0.03
 CHART = (168, 208)
 """Rows and columns of the charts that skin is painted on."""
 
+NO_SKIN = {"worn": 0, "skin_melanin": np.zeros((1, *CHART)), "skin_blood": np.zeros((1, *CHART))}
+"""A lot whose face wears no skin of a hybrid model."""
+
 MOLES = 6
 HAIR = ((0.010, 0.008, 0.007), (0.05, 0.03, 0.02), (0.13, 0.07, 0.03), (0.36, 0.25, 0.13),
         (0.30, 0.30, 0.30), (0.60, 0.59, 0.57), (0.18, 0.06, 0.02))  # fmt: skip
@@ -29,7 +32,7 @@ def draw_lot(rng: np.random.Generator, size: int) -> Lot:
     """One picture of `size` pixels square; every value is float32."""
     melanin = np.exp(rng.uniform(*np.log(MELANIN)))
     parts = [_skin(rng, melanin), _marks(rng), _features(rng, melanin), _surroundings(rng)]
-    parts += [draw_light(rng), draw_camera(rng, size)]
+    parts += [draw_light(rng), draw_camera(rng, size), NO_SKIN]
     lot = {name: value for part in parts for name, value in part.items()}
     return {name: np.asarray(value, np.float32) for name, value in lot.items()}
 

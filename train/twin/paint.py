@@ -19,6 +19,10 @@ REGIONS = ((0.0, 0.50, 0.50, 0.20), (0.52, -0.28, 0.20, 0.15), (0.0, -0.30, 0.14
            (0.34, 0.05, 0.16, 0.10), (0.0, -0.66, 0.17, 0.055), (0.0, -1.0, 0.3, 0.15))  # fmt: skip
 """Azimuth, elevation and widths of forehead, cheeks, nose, lids, lips and chin."""
 
+OWN = 0.4
+"""Share of a lot's own regions and noise that is left under a skin of a hybrid model, which has
+such structure already."""
+
 
 class Paint(NamedTuple):
     """Charts [batch, channels, rows, columns]: the pigments, the paint over them and its share,
@@ -61,11 +65,12 @@ def region(
 
 def _pigments(lot: dict[str, Tensor], regions: Tensor) -> tuple[Tensor, Tensor]:
     logs = []
+    own = 1 - (1 - OWN) * column(lot["worn"])
     for name in ("melanin", "blood"):
         log = torch.einsum("br,rhw->bhw", lot[f"{name}_regions"], regions)[:, None]
         for octave in ("coarse", "middle", "fine"):
             log = log + enlarged(lot[f"{name}_{octave}"])
-        logs.append(log)
+        logs.append(own * log + lot[f"skin_{name}"])
     # Lips hold what they hold: freckles and moles end there.
     skin = 1 - regions[4]
     marks = (enlarged(lot["freckles"]) + _moles(lot)) * skin
@@ -100,7 +105,7 @@ def _layers(
     lips = (1.6 * regions[4]).clamp_max(1) * column(lot["make_up"])
     return [
         (lot["lipstick"][:, :, None, None], lips),
-        (hair, _beard(lot, side, elevation)),
+        (hair, beard(lot, side, elevation)),
         (hair, _brow(lot, side, elevation)),
         (torch.full_like(dark, 0.015), _lashes(lot, side, elevation)),
         (dark, 0.5 * mouth),
@@ -108,7 +113,8 @@ def _layers(
     ]
 
 
-def _beard(lot: dict[str, Tensor], side: Tensor, elevation: Tensor) -> Tensor:
+def beard(lot: dict[str, Tensor], side: Tensor, elevation: Tensor) -> Tensor:
+    """The share of hair where a lot has beard, moustache or stubble."""
     jaw = soft_step(-0.42 - elevation - 0.35 * (1 - (side / 0.6).clamp(0, 1)) * (side > 0.25), 0.06)
     lip = soft_step(elevation + 0.60, 0.03) * soft_step(0.35 - side, 0.05)
     jaw = jaw * (1 - lip * (1 - column(lot["moustache"])))
