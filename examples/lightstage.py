@@ -42,9 +42,11 @@ def person(number: int, people: int, texels: int) -> dict[str, np.ndarray]:
     draw = np.random.default_rng([25, number])
     lot = draw_lot(draw, 8)
     # Melanin evenly over its range, in an order that is not that of the numbers.
-    lot["f_mel"] = np.float32(0.012 * 16 ** ((7 * number % people + draw.random()) / people))
-    lot |= {name: np.float32(value) for name, value in BARE.items()}
-    batch = {name: torch.from_numpy(np.asarray(value))[None] for name, value in lot.items()}
+    lot["f_mel"] = np.asarray(
+        0.012 * 16 ** ((7 * number % people + draw.random()) / people), np.float32
+    )
+    lot |= {name: np.asarray(value, np.float32) for name, value in BARE.items()}
+    batch = {name: torch.from_numpy(value)[None] for name, value in lot.items()}
     size = (texels, texels)
     painted = Paint(*(F.interpolate(part, size, mode="bilinear") for part in paint_skin(batch)))
     pores = torch.from_numpy(draw.normal(size=(2, 1, texels // 4, texels // 4)).astype(np.float32))

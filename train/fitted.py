@@ -67,7 +67,7 @@ class FittedLots(Dataset[Drawn]):
         view = int(draw.integers(len(self.faces.views)))
         skin, mask = self.faces.skin(view // self.faces.shots, draw)
         wall = draw.uniform(0.02, 0.9) * np.exp(draw.normal(0, 0.1, 3))
-        lot = {"skin": skin, "known": mask[None], "wall": wall.clip(0.005, 1)}
+        lot: dict[str, object] = {"skin": skin, "known": mask[None], "wall": wall.clip(0.005, 1)}
         lot |= draw_gloss(draw) | draw_light(draw) | draw_camera(draw, self.faces.size)
         drawn = {name: np.asarray(value, np.float32) for name, value in lot.items()}
         return self.faces.views[view]._asdict() | drawn
