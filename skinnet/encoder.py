@@ -80,13 +80,14 @@ class SkinEncoder(nn.Module):
     ) -> Float[Tensor, "batch gathered"]:
         """Mean log colours of the places that the network attends to.
 
-        The white of an eye or a grey wall tells the white balance to a percent; averages of
-        features do not (Hu et al. 2017, FC4).
+        The white of an eye or a grey wall tells the white balance, which an average of features
+        blurs (Hu et al. 2017, FC4).
         """
         attention = self.gather(features).flatten(2).softmax(-1).float()
         small = F.interpolate(log, size=features.shape[-2:], mode="bilinear").flatten(2)
         # Not a matrix product, which would run in the trunk's precision.
-        return (attention[:, :, None] * small[:, None]).sum(-1).flatten(1)
+        colours: Tensor = (attention[:, :, None] * small[:, None]).sum(-1)
+        return colours.flatten(1)
 
 
 class _Head(nn.Module):
