@@ -25,10 +25,11 @@ from train.fitted import FittedFaces
 from train.guards import FiniteGuard
 from train.logs import CurveLogger
 from train.portraits import Portraits
+from train.synthetic import SyntheticFaces
 from train.task import SkinTask
 from train.twin.faces import TwinFaces
 
-__all__ = ["FittedFaces", "Portraits", "SkinCLI", "TwinFaces", "main"]
+__all__ = ["FittedFaces", "Portraits", "SkinCLI", "SyntheticFaces", "TwinFaces", "main"]
 
 
 class SentenceParser(LightningArgumentParser):
