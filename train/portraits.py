@@ -122,8 +122,9 @@ class Portraits(LightningDataModule):
         return f"{len(self.crops['train'])} photographs and {self.twin.described}"
 
     def prepare_data(self) -> None:
-        """Cast the heads of the twin that are missing, once there are photographs at all."""
-        find_pictures(self.folder)
+        """Cast the heads of the twin that are missing, once there are photographs to be used."""
+        if not self.crops:
+            self._find()
         self.twin.trainer = self.trainer
         self.twin.prepare_data()
 
