@@ -127,6 +127,11 @@ class ColourSettings:
                 "they fit it; take scans of more kinds of skin, or one exposure a scan "
                 "(--colour.calibration exposure)."
             )
+        say(
+            f"the transform is tied to {found.edges} stretches of the edge of the model's colours; "
+            "if these skins end inside the range of --colour.f_mel and --colour.f_blood instead, "
+            "it is wrong by as much."
+        )
         record = {name: value for name, value in asdict(found).items() if name != "transform"}
         return Calibrated(found.transform, [1.0] * len(samples), record)
 
