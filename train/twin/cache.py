@@ -13,6 +13,7 @@ from zipfile import BadZipFile
 
 import numpy as np
 
+from skinnet.errors import InputError
 from train.twin.heads import ict_head, procedural_head
 from train.twin.ict import IctHead, load_ict_head
 from train.twin.views import Buffers, cast
@@ -54,7 +55,12 @@ def geometry(
     """
     settings = Settings(size, seed, "procedural" if ict is None else _fingerprint(ict), VERSION)
     place = folder / settings.key
-    place.mkdir(parents=True, exist_ok=True)
+    try:
+        place.mkdir(parents=True, exist_ok=True)
+    except OSError as error:
+        raise InputError(
+            f"{place} cannot be made ({error.strerror}); give another folder for the geometry."
+        ) from error
     stack = _empty(count, size)
     missing = [i for i in range(count) if not _fill(stack, i, _file(place, split, i), settings)]
     jobs = [(place, settings, split, index, ict) for index in missing]

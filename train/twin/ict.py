@@ -79,7 +79,7 @@ def _checked(path: Path) -> dict[str, np.ndarray]:
             f"{', '.join(SHAPES)}."
         ) from error
     except (OSError, ValueError, EOFError, TypeError, BadZipFile) as error:
-        raise InputError(f"{path} cannot be read as an .npz ({error}); copy it again.") from error
+        raise InputError(f"{path} cannot be read as an .npz of arrays; copy it again.") from error
     for name, shape in SHAPES.items():
         found = arrays[name].shape
         known = [k if n is None else n for n, k in zip(shape, found, strict=False)]

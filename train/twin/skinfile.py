@@ -53,7 +53,7 @@ def load_skins(path: Path) -> Skins:
             f"{path} lacks melanin or blood; make it with python -m train.twin.skins."
         ) from error
     except (OSError, ValueError, EOFError, TypeError, AttributeError, BadZipFile) as error:
-        raise InputError(f"{path} cannot be read as an .npz ({error}); make it again.") from error
+        raise InputError(f"{path} cannot be read as an .npz of arrays; make it again.") from error
     for name, charts in skins._asdict().items():
         _check(path, name, charts, len(skins.melanin) if skins.melanin.ndim else 0)
     return skins

@@ -5,6 +5,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from skinnet.errors import InputError
 from train.twin import cache
 from train.twin.labels import SKIN
 from train.twin.part import part, sheet
@@ -119,3 +120,9 @@ def test_most_heads_are_of_ict(tmp_path: Path, ict_file: Path) -> None:
 def _same(one: Buffers, other: Buffers) -> None:
     for a, b in zip(one, other, strict=True):
         np.testing.assert_array_equal(a, b)
+
+
+def test_a_folder_that_cannot_be_made_is_named(tmp_path: Path) -> None:
+    (tmp_path / "file").touch()
+    with pytest.raises(InputError, match=r"file.* cannot be made \(Not a directory\)"):
+        cache.geometry(tmp_path / "file", 8, 1, "train", 0)
