@@ -2,8 +2,11 @@
 
 import argparse
 import json
+import sys
 from collections.abc import Callable, Iterator, Mapping
 from typing import Any
+
+from skinnet.errors import InputError
 
 Results = dict[str, Any]
 
@@ -14,11 +17,15 @@ def main(
     layout: Callable[[Results], str] | None = None,
 ) -> None:
     """Measures, then prints a table (`layout`'s, or a line a number), or with `--json` one
-    object."""
+    object; exits with 2 and a sentence for bad input."""
     parser = argparse.ArgumentParser(description=description)
     parser.add_argument("--json", action="store_true", help="print one JSON object")
     as_json = parser.parse_args().json
-    results = measure()
+    try:
+        results = measure()
+    except InputError as error:
+        print(f"\n{error}", file=sys.stderr)
+        sys.exit(2)
     print(json.dumps(results) if as_json else (layout or table)(results))
 
 

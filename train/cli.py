@@ -101,10 +101,20 @@ def check_checkpoint(subcommand: str, path: str | None) -> None:
         read_checkpoint(path)
 
 
+RUN_FILES = ("*.ckpt", "config.yaml", "metrics.csv", "events.out.tfevents.*", "skipped.csv")
+"""What training leaves in the folder of a run, even of one that came to nothing."""
+
+
 def keep_previous(run: Path) -> None:
-    """Rename a finished or broken-off run to the next free number, so that nothing is lost."""
+    """Rename a finished or broken-off run to the next free number, so that nothing is lost.
+
+    Raises `InputError` for a folder with files in it that is no run's.
+    """
+    run = run.resolve()
     if not run.is_dir() or not any(run.iterdir()):
         return
+    if not any(next(run.glob(name), None) for name in RUN_FILES):
+        raise InputError(f"{run} holds files, but no run's; give another folder with --run.")
     number = next(n for n in range(1, 10**6) if not run.with_name(f"{run.name}.{n}").exists())
     kept = run.with_name(f"{run.name}.{number}")
     run.rename(kept)
@@ -150,7 +160,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
                 args=list(arguments) if arguments is not None else None,
                 parser_kwargs={"prog": "python -m train"},
             )
-    except (InputError, MisconfigurationException) as error:
+    except (InputError, MisconfigurationException, OSError) as error:
         print(f"train: {error}", file=sys.stderr)
         return 2
     return 0

@@ -114,6 +114,11 @@ class Portraits(LightningDataModule):
         self.unreadable_share = unreadable_share
         self.seed = seed
         self.twin = twin or TwinFaces(size=size, batch_size=batch_size)
+        if self.twin.size != size:
+            raise InputError(
+                f"Photographs are cut to {size} pixels and the twin's pictures have "
+                f"{self.twin.size}; give --data.init_args.size and .twin.size the same."
+            )
         self.crops: dict[str, list[Crop]] = {}
 
     @property
@@ -165,9 +170,10 @@ class Portraits(LightningDataModule):
         return self._fixed(self.twin.test_dataloader())
 
     def _fixed(self, twin: DataLoader[Drawn]) -> CombinedLoader:
-        """The photographs kept for validation, as they are, beside pictures of the twin."""
+        """The photographs kept for validation, as they are, beside pictures of the twin; whichever
+        are fewer come again."""
         portraits: DataLoader[Crop] = DataLoader(self.crops["val"], self.batch_size)  # type: ignore[arg-type]
-        return CombinedLoader({"portraits": portraits, "twin": twin}, "min_size")
+        return CombinedLoader({"portraits": portraits, "twin": twin}, "max_size_cycle")
 
     def on_after_batch_transfer(self, batch: Any, dataloader_idx: int) -> dict[str, Batch]:
         photograph, mask, *again = (part.float() / 255 for part in batch["portraits"])

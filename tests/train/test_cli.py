@@ -86,6 +86,24 @@ def test_an_earlier_run_is_kept_aside(fit: Fit, tmp_path: Path) -> None:
     assert (tmp_path / "run.1" / "last.ckpt").read_bytes() == b"precious"
 
 
+def test_a_folder_of_something_else_is_left_alone(
+    fit: Fit, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    (tmp_path / "configs").mkdir()
+    (tmp_path / "configs" / "mine.yaml").write_text("precious")
+    assert fit(tmp_path / "configs", "--trainer.max_steps=1") == 2
+    assert "configs holds files, but no run's" in capsys.readouterr().err
+    assert (tmp_path / "configs" / "mine.yaml").read_text() == "precious"
+
+
+def test_a_file_in_the_place_of_the_run_gets_a_sentence(
+    fit: Fit, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    (tmp_path / "run").write_text("precious")
+    assert fit(tmp_path / "run", "--trainer.max_steps=1") == 2
+    assert str(tmp_path / "run") in capsys.readouterr().err
+
+
 def test_configured_callbacks_run_beside_our_own(fit: Fit, tmp_path: Path) -> None:
     stop = "--trainer.callbacks.init_args"
     own = ("--trainer.callbacks+=EarlyStopping", f"{stop}.monitor=val/loss")

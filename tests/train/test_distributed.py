@@ -44,7 +44,7 @@ def test_two_processes_have_the_samples_and_losses_of_one(
     one, two, notes = (tmp_path / name for name in ("one", "two", "notes"))
     for folder in (notes, two):
         folder.mkdir()
-    (two / "earlier").touch()
+    (two / "metrics.csv").touch()
     witness = f"--trainer.callbacks.init_args.folder={notes}"
     done = train_twice(fit_arguments(two, *TWO, witness))
     assert done.returncode == 0, done.stderr

@@ -10,6 +10,7 @@ import torch
 from lightning import Trainer
 from PIL import Image
 from skimage.data import astronaut
+from torch.utils.data import DataLoader
 
 from skinnet.checkpoint import read_checkpoint
 from skinnet.errors import InputError
@@ -25,6 +26,7 @@ from train.portraits import (
     find_crops,
     varied,
 )
+from train.twin.faces import Drawn, TwinFaces
 
 
 def test_a_face_is_found_cropped_and_masked(tmp_path: Path) -> None:
@@ -159,6 +161,20 @@ def test_a_brighter_photograph_clips_and_keeps_its_mask() -> None:
     made = [varied(bright, np.random.default_rng(n)) for n in range(20)]
     assert max(each.photograph.max() for each in made) == 255
     assert all((each.mask == 7).all() for each in made)
+
+
+def test_sizes_that_differ_are_refused(tmp_path: Path) -> None:
+    with pytest.raises(InputError, match="cut to 192 pixels and the twin's pictures have 160"):
+        Portraits(str(tmp_path), size=192, twin=TwinFaces(size=160))
+
+
+@pytest.mark.filterwarnings("ignore:.isinstance.treespec")
+def test_validation_sees_all_its_photographs_however_few_the_twin_s(tmp_path: Path) -> None:
+    data = Portraits(str(tmp_path), size=16, batch_size=2)
+    data.crops = {"val": [Crop(np.zeros((16, 16, 3), np.uint8), np.zeros((16, 16), np.uint8))] * 9}
+    twin: DataLoader[Drawn] = DataLoader([{"f_mel": np.zeros(1)}] * 2, 2)  # type: ignore[arg-type]
+    sizes = [len(batch["portraits"].photograph) for batch, *_ in data._fixed(twin)]
+    assert sum(sizes) == 9
 
 
 @pytest.mark.filterwarnings("ignore:.isinstance.treespec")

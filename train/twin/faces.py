@@ -73,7 +73,7 @@ class TwinFaces(LightningDataModule):
         skins: .npz of `python -m train.twin.skins` or `examples/london.py`, skins drawn from a
             hybrid model; half of the pictures then wear one. Without it skins are painted only.
         seed: of everything that is drawn.
-        workers: processes that draw pictures; 0 draws them in the training process.
+        workers: processes that cast heads and draw pictures; 0 does both in the training process.
     """
 
     def __init__(
@@ -127,7 +127,8 @@ class TwinFaces(LightningDataModule):
                 self.buffers[split] = cast._replace(seen=cast.seen.view(np.int64))._asdict()
 
     def _cast(self, split: str) -> Buffers:
-        return geometry(self.geometry, self.size, self.heads[split], split, self.seed, self.ict)
+        count, workers = self.heads[split], max(self.workers, 1)
+        return geometry(self.geometry, self.size, count, split, self.seed, self.ict, workers)
 
     def train_dataloader(self) -> StreamLoader:
         return self.stream(self.samples["train"] // self.batch_size, self.trainer)

@@ -2,5 +2,3 @@
 
 BACKGROUND, SKIN, EYE, TEETH, MOUTH, HAIR, GLASSES, CLOTH = range(8)
 """MOUTH is what is red and dark within: gums, tongue, the mouth's walls and the eyes' sockets."""
-
-NAMES = ("background", "skin", "eye", "teeth", "mouth", "hair", "glasses", "cloth")

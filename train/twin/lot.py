@@ -38,7 +38,6 @@ def draw_lot(rng: np.random.Generator, size: int) -> Lot:
 
 
 def _skin(rng: np.random.Generator, melanin: float) -> dict[str, object]:
-    # Pale skin shows more of a tan's pattern and of a blush than dark skin does.
     return {
         "f_mel": melanin,
         "f_blood": np.exp(rng.uniform(*np.log(HEMOGLOBIN))),

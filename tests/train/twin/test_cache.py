@@ -40,6 +40,12 @@ def test_casts_are_built_once(tmp_path: Path, built: list[int]) -> None:
     _same(first, second)
 
 
+def test_several_processes_cast_the_same(tmp_path: Path) -> None:
+    one = cache.geometry(tmp_path / "one", SIZE, 3, "val", seed=0)
+    two = cache.geometry(tmp_path / "two", SIZE, 3, "val", seed=0, workers=2)
+    assert all(np.array_equal(a, b) for a, b in zip(one, two, strict=True))
+
+
 def test_more_heads_leave_the_first_as_they_were(tmp_path: Path, built: list[int]) -> None:
     one = cache.geometry(tmp_path, SIZE, 1, "train", 0)
     three = cache.geometry(tmp_path, SIZE, 3, "train", 0)
