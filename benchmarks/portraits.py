@@ -97,6 +97,7 @@ def measure_portraits(
     the defaults of `train.portraits`; only with all pictures are these known.
     """
     errors: dict[str, list[Moments]] = {}
+    bare: list[Moments] = []
     changes: dict[str, list[list[float]]] = {name: [] for name in DISTURBANCES}
     measured: list[tuple[Portrait, float]] = []
     for kind in ("congress", "london"):
@@ -104,7 +105,9 @@ def measure_portraits(
         found = portraits(sorted((folder / kind).glob("*.jpg"))[::every])
         for number, one in enumerate(found):
             maps, capture = reader(one.crop)
-            errors[kind].append(rebuilt(one, composed(maps, capture, decoder)[1]))
+            made = composed(maps, capture, decoder)
+            errors[kind].append(rebuilt(one, made.image))
+            bare.append(rebuilt(one, made.explained))
             if kind == "london" or number % EVERY == 0:
                 for name, change in relative_changes(one.crop, maps, reader).items():
                     changes[name].append(change)
@@ -116,6 +119,7 @@ def measure_portraits(
         "reconstruction": pooled(errors["congress"] + errors["london"]).rmse,
         "stability": {name: medians(some) for name, some in changes.items()},
         "ita_rank": ita_rank(measured),
+        "explained": pooled(bare).rmse,
         "reconstruction_by_set": {name: pooled(some).rmse for name, some in sets.items()},
         "count": {
             **{name: len(some) for name, some in sets.items()},

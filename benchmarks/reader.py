@@ -1,6 +1,7 @@
 """Photographs read by a network as users' are: at its working size, and brought back."""
 
 from collections.abc import Callable
+from typing import NamedTuple
 
 import numpy as np
 import torch
@@ -13,7 +14,6 @@ from skinnet.autoencoder import SkinAutoencoder, SkinMaps
 from skinnet.capture import Capture
 from skinnet.decoder import SkinDecoder
 from skinnet.faces import resize
-from skinnet.runtime import Decomposer
 
 LEAST_SIDE = 16
 
@@ -37,23 +37,6 @@ class NetworkReader:
         return resized(maps, height, width), capture
 
 
-class RuntimeReader:
-    """The runtime without torch, on all of the picture."""
-
-    def __init__(self, decomposer: Decomposer):
-        self.decomposer = decomposer
-
-    def __call__(self, photograph: NDArray[np.uint8]) -> tuple[SkinMaps, Capture]:
-        found = self.decomposer(photograph, whole_image=True)
-        maps = [torch.from_numpy(getattr(found, name))[None] for name in SkinMaps._fields]
-        maps[4] = maps[4].movedim(-1, 1)
-        *weights, temperature = found.light.values()
-        ratios = torch.tensor([list(found.camera["white_balance"].values())])
-        components = torch.tensor([found.camera["components"]])
-        light = torch.tensor([weights]), torch.tensor([temperature])
-        return SkinMaps(*maps), Capture(*light, components, ratios.log())
-
-
 def resized(maps: SkinMaps, height: int, width: int) -> SkinMaps:
     """Maps of another size, bilinear, averaged where they shrink."""
     channels = torch.cat([one if one.ndim == 4 else one[:, None] for one in maps], 1)
@@ -63,13 +46,23 @@ def resized(maps: SkinMaps, height: int, width: int) -> SkinMaps:
     return SkinMaps(melanin, hemoglobin, shading, specular, torch.stack(offset, 1), mask)
 
 
-def composed(maps: SkinMaps, capture: Capture, decoder: SkinDecoder) -> tuple[Tensor, Tensor]:
-    """Linear sRGB [1, 3, height, width] of the skin itself and of the photograph."""
+class Composed(NamedTuple):
+    """Linear sRGB [1, 3, height, width] of the skin itself, of what light and gloss make of it, and
+    of the photograph, which has the offset too."""
+
+    albedo: Tensor
+    explained: Tensor
+    image: Tensor
+
+
+def composed(maps: SkinMaps, capture: Capture, decoder: SkinDecoder) -> Composed:
+    """The photograph that a reading makes, step by step."""
     matrix = decoder.camera.matrix(capture)
     albedo = decoder.skin(maps.melanin, maps.hemoglobin, matrix)
     white = matrix.sum(-2)[..., None, None]
     gloss = maps.specular[:, None] * white
-    return albedo, maps.shading[:, None] * albedo + gloss + maps.offset
+    explained = maps.shading[:, None] * albedo + gloss
+    return Composed(albedo, explained, explained + maps.offset)
 
 
 class Encoder:
@@ -86,6 +79,6 @@ class Encoder:
     @torch.no_grad()
     def _read(self, photograph: NDArray[np.uint8], skin: Tensor) -> Pixels:
         maps, capture = self.reader(photograph)
-        albedo, image = composed(maps, capture, self.decoder)
-        values = [on(one, skin) for one in (*maps[:4], albedo, image)]
-        return Pixels(*values, maps.mask > 0.5)
+        made = composed(maps, capture, self.decoder)
+        values = [on(one, skin) for one in (*maps[:4], made.albedo, made.image)]
+        return Pixels(*values, maps.mask > 0.5, on(made.explained, skin))

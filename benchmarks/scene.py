@@ -18,7 +18,8 @@ class Pixels(NamedTuple):
 
     `melanin`, `hemoglobin`, `shading`, `specular` [pixels]; `albedo` and `colour` [pixels, 3],
     linear sRGB of the skin itself and of the photograph. `mask` [pictures, height, width] is of
-    whole pictures: where skin is said to be.
+    whole pictures: where skin is said to be. `explained` [pixels, 3] is what skin, shading and
+    gloss make of the photograph without an offset.
     """
 
     melanin: Tensor
@@ -28,6 +29,7 @@ class Pixels(NamedTuple):
     albedo: Tensor | None
     colour: Tensor | None
     mask: Tensor | None
+    explained: Tensor | None = None
 
 
 class Scene(NamedTuple):

@@ -32,7 +32,7 @@ class Scores:
         self.columns = {name: Moments() for name in COLUMNS}
         self.groups = {name: Moments() for name in GROUPS}
         self.pictures = dict.fromkeys(GROUPS, 0)
-        self.leak = Moments()
+        self.leak, self.explained = Moments(), Moments()
         self.overlap: Tensor | None = torch.zeros(2, dtype=torch.float64)
 
     def add(self, guess: Pixels, scene: Scene) -> None:
@@ -48,6 +48,8 @@ class Scores:
         for name, field in COLUMNS.items():
             if getattr(guess, field) is not None:
                 self.columns[name].add(getattr(guess, field), getattr(truth, field))
+        if guess.explained is not None and truth.colour is not None:
+            self.explained.add(guess.explained, truth.colour)
         assert truth.shading is not None
         self.leak.add(guess.melanin - truth.melanin, truth.shading)
         self._add_groups(guess, scene)

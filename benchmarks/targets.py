@@ -43,9 +43,11 @@ def flat(results: Mapping[str, Any], prefix: str = "") -> Iterator[tuple[str, An
             yield prefix + name, value
 
 
-def not_beaten(results: Mapping[str, Any]) -> list[str]:
-    """ROW.COLUMN wherever a baseline is as good as stage 2 or better."""
-    best = dict(flat(results["stage2"] or {}))
+def not_beaten(results: Mapping[str, Any]) -> list[str] | None:
+    """ROW.COLUMN wherever a baseline is as good as stage 2 or better; None without stage 2."""
+    if results["stage2"] is None:
+        return None
+    best = dict(flat(results["stage2"]))
     return [
         f"{row}.{column}"
         for row in ROWS[:3]
@@ -69,7 +71,7 @@ def layout(results: Mapping[str, Any]) -> str:
         cells = [_cell(table[row].get(name)) for row in ROWS]
         lines.append(_line(name, [*cells, asked.get(name, "")]))
     lines += ["", *_groups(results["groups"]), ""]
-    rest = {name: results[name] for name in ("portraits", "not_beaten", "settings")}
+    rest = {name: results[name] for name in ("portraits", "explained", "not_beaten", "settings")}
     for name, value in flat(rest):
         wanted = asked.get(name, asked.get(_without_disturbance(name), ""))
         lines.append(f"{name:44}{_cell(value):>9}  {wanted}".rstrip())

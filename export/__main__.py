@@ -41,7 +41,6 @@ def main(arguments: Sequence[str] | None = None) -> int:
 def _export(checkpoint: Path, output: Path, half: bool) -> None:
     # Imported here, so that --help does not wait for torch.
     from export.onnx_file import SIZES, export_model
-    from skinnet.weights import save_weights
 
     if output.suffix != ".onnx":
         raise InputError(f"{output} does not end in .onnx; name the file that is to be written.")
@@ -49,15 +48,10 @@ def _export(checkpoint: Path, output: Path, half: bool) -> None:
         raise InputError(f"{output} is a folder; name the file that is to be written.")
     if not output.parent.is_dir():
         raise InputError(f"{output.parent} is not a folder; make it first.")
+    if checkpoint.resolve() == output.with_suffix(".safetensors").resolve():
+        raise InputError(f"{checkpoint} would be overwritten; give another name with -o.")
     model, trained_on = _load(checkpoint)
-    if half:
-        # Rounded before either file is made of them, so that both hold the same weights. The
-        # constants of the physics would not survive it.
-        model.encoder.half().float()
-    reports = export_model(model, output, trained_on)
-    if half:
-        model.encoder.half()
-    save_weights(model, output.with_suffix(".safetensors"), trained_on)
+    reports = export_model(model, output, trained_on, half)
     sizes = ", ".join("x".join(map(str, size)) for size in SIZES)
     print(f"compared with torch at {sizes} (batch x height x width)")
     for report in reports:

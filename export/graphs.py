@@ -72,7 +72,7 @@ class DecoderGraph(nn.Module):
         return srgb(self.decoder.compose(*maps, capture)).movedim(1, -1)
 
 
-def example(model: SkinAutoencoder, batch: int, height: int, width: int) -> Tensor:
+def example(batch: int, height: int, width: int) -> Tensor:
     """A noise photograph of that size, the same on every run."""
     lot = torch.Generator().manual_seed(height * 10_000 + width)
     return torch.randint(0, 256, (batch, height, width, 3), generator=lot, dtype=torch.uint8)

@@ -21,9 +21,11 @@ from skinnet import __version__
 from skinnet.autoencoder import SkinAutoencoder
 from skinnet.camera import LIGHTS
 from skinnet.errors import InputError
+from skinnet.files import written_together
+from skinnet.model_file import FORMAT, decoder_path
+from skinnet.weights import save_weights
 
 OPSET = 20
-FORMAT = "1"
 LICENSE = "MIT"
 SIZES = ((1, 64, 64), (2, 97, 65), (1, 128, 128), (3, 33, 201), (1, 256, 256))
 
@@ -38,39 +40,38 @@ class Report:
     milliseconds: float
 
 
-def export_model(model: SkinAutoencoder, path: Path, trained_on: str) -> list[Report]:
-    """Write the encoder to `path` and the decoder beside it, each compared with torch.
+def export_model(
+    model: SkinAutoencoder, path: Path, trained_on: str, half: bool = False
+) -> list[Report]:
+    """Write the encoder to `path`, and beside it the decoder and the weights.
 
-    Raises `InputError` if a file differs from torch by more than 1e-3 of an output's range; then
-    neither is written.
+    With `half` the encoder's weights are rounded to half precision, in which .safetensors then
+    holds them. Raises `InputError` if an ONNX file differs from torch by more than 1e-3 of an
+    output's range; then nothing is written.
     """
     model = model.eval()
-    photograph = example(model, 2, 64, 80)
+    if half:
+        # Rounded before any file is made of them, so that all hold the same weights. The
+        # constants of the physics would not survive it.
+        model.encoder.half().float()
+    photograph = example(2, 64, 80)
     maps = EncoderGraph(model)(photograph)
     decoder_inputs = {k: v for k, v in zip(OUTPUTS, maps, strict=True) if k != "mask"}
     jobs = [
         ("encoder", EncoderGraph(model), {"image": photograph}, OUTPUTS, path),
         ("decoder", DecoderGraph(model.decoder), decoder_inputs, DECODED, decoder_path(path)),
     ]
-    written = []
-    try:
+    with written_together() as beside:
+        reports = []
         for kind, graph, inputs, outputs, target in jobs:
-            beside = target.with_name(f".{target.name}.part")
-            written.append((beside, target))
-            _write(graph, inputs, outputs, beside)
-            _describe(beside, kind, model, outputs, trained_on)
-        reports = [_compare(model, *pair) for pair in written]
-        for beside, target in written:
-            beside.replace(target)
-        return reports
-    finally:
-        for beside, _ in written:
-            beside.unlink(missing_ok=True)
-
-
-def decoder_path(path: Path) -> Path:
-    """Where the decoder of an encoder file lies."""
-    return path.with_suffix(".decoder.onnx")
+            part = beside(target)
+            _write(graph, inputs, outputs, part)
+            _describe(part, kind, model, outputs, trained_on)
+            reports.append(_compare(model, part, target))
+        if half:
+            model.encoder.half()
+        save_weights(model, beside(path.with_suffix(".safetensors")), trained_on)
+    return reports
 
 
 def _write(
@@ -156,7 +157,7 @@ def _compare(model: SkinAutoencoder, beside: Path, target: Path) -> Report:
 def _run_both(
     model: SkinAutoencoder, session: onnxruntime.InferenceSession, size: tuple[int, int, int]
 ) -> tuple[list[np.ndarray], list[np.ndarray], float]:
-    photograph = example(model, *size)
+    photograph = example(*size)
     expected: tuple[Tensor, ...] = EncoderGraph(model)(photograph)
     inputs = {"image": photograph}
     if len(session.get_inputs()) > 1:

@@ -13,6 +13,9 @@ from skinnet.capture import Capture
 from skinnet.decoder import SkinDecoder
 from skinnet.encoder import WIDTHS, SkinEncoder
 
+FORMAT = 3
+"""Version of weights and checkpoints: raise it with every change to what a weight means."""
+
 F_MEL_MAX = 0.43
 """Largest melanosome volume fraction of the paper's Table 1."""
 
@@ -47,12 +50,15 @@ class SkinMaps(NamedTuple):
 
 
 def controls(
-    maps: Float[Tensor, "batch 8 height width"], globals: Float[Tensor, "batch globals"]
+    maps: Float[Tensor, "batch 8 height width"],
+    globals: Float[Tensor, "batch globals"],
+    linear: Float[Tensor, "batch 3 height width"],
 ) -> tuple[SkinMaps, Capture]:
     """Raw outputs of the encoder mapped smoothly to physical ranges, in float32 at least.
 
     Pigments are cubes of a sigmoid: even steps of the cube root of a fraction are about even steps
-    of colour, and both ends of the range can be reached.
+    of colour, and both ends of the range can be reached. The offset is what the network says on
+    skin, and beside it the photograph itself, `linear` in linear sRGB, by the share of the mask.
     """
     maps, globals = _at_least_float32(maps), _at_least_float32(globals)
     melanin, hemoglobin, shading, specular, *offset, mask = maps.unbind(1)
@@ -64,15 +70,19 @@ def controls(
         CAMERA_MAX * camera.tanh(),
         WHITE_BALANCE_MAX * balance.tanh(),
     )
-    skin = SkinMaps(
+    skin = mask.sigmoid()
+    # Detached, or a photograph would be explained best by finding no skin in it.
+    share = skin.detach()[:, None]
+    rest = share * torch.stack(offset, 1) + (1 - share) * linear
+    found = SkinMaps(
         F_MEL_MAX * melanin.sigmoid() ** 3,
         F_BLOOD_MAX * hemoglobin.sigmoid() ** 3,
         SHADING_MAX * (shading - 1.1).sigmoid(),
         (specular - 4).sigmoid(),
-        torch.stack(offset, 1).clamp(-1, 1),
-        mask.sigmoid(),
+        rest.clamp(-1, 1),
+        skin,
     )
-    return skin, capture
+    return found, capture
 
 
 def _at_least_float32(value: Tensor) -> Tensor:
@@ -119,7 +129,9 @@ class SkinAutoencoder(nn.Module):
 
     def encode(self, photograph: Float[Tensor, "batch 3 height width"]) -> tuple[SkinMaps, Capture]:
         """The maps and the capture alone; this half may run in lower precision."""
-        return controls(*self.encoder(photograph, rgb_to_linear_rgb(photograph)))
+        linear = rgb_to_linear_rgb(photograph)
+        maps, globals = self.encoder(photograph, linear)
+        return controls(maps, globals, linear)
 
     def decode(self, maps: SkinMaps, capture: Capture) -> Float[Tensor, "batch 3 height width"]:
         """Linear sRGB of maps and capture; this half needs float32."""

@@ -7,10 +7,9 @@ from typing import Any
 import torch
 
 from skinnet import __version__
-from skinnet.autoencoder import AutoencoderConfig, SkinAutoencoder
+from skinnet.autoencoder import FORMAT, AutoencoderConfig, SkinAutoencoder
 from skinnet.errors import InputError
 
-FORMAT = 2
 _PREFIX = "model."
 
 
@@ -42,10 +41,10 @@ def read_checkpoint(path: str | Path) -> dict[str, Any]:
     note = checkpoint.get("skinnet") if isinstance(checkpoint, dict) else None
     if not isinstance(note, dict):
         raise InputError(f"{path} is not a checkpoint of skinnet; something else wrote it.")
-    if note["format"] != FORMAT:
+    if note.get("format") != FORMAT:
         raise InputError(
-            f"{path} has format {note['format']}, this skinnet reads {FORMAT}; it was written by "
-            f"version {note['version']}."
+            f"{path} has format {note.get('format')}, this skinnet reads {FORMAT}; it was written "
+            f"by version {note.get('version')}."
         )
     return dict(checkpoint)
 

@@ -17,6 +17,9 @@ HEAD = 24
 GATHERED = 8
 """Places in the photograph whose colours the scene is told."""
 
+VOTING = 32
+"""Channels from which attention, and the chroma that a place should have, are read."""
+
 _PIXEL = 9
 _DARKEST = 4e-3
 
@@ -26,7 +29,8 @@ class SkinEncoder(nn.Module):
 
     The head sees display values, linear ones and their logarithms, in which pigments are nearly
     linear, and is modulated by what the deepest level makes of the whole scene: how a colour reads
-    depends on the light. Outputs get their meaning and range from `controls`.
+    depends on the light. What votes make of the light's tint reaches the globals directly as well.
+    Outputs get their meaning and range from `controls`.
 
     Any size from 1 x 1 up: halvings round up, and features are brought to the size of the level
     above, so nothing is padded or cropped. `maps` and `globals` are the numbers of output channels
@@ -45,11 +49,12 @@ class SkinEncoder(nn.Module):
         self.down = nn.ModuleList(_stage(fine, coarse, stride=2) for fine, coarse in pairs)
         self.scene = nn.Sequential(nn.Linear(2 * deepest, deepest), nn.ReLU())
         self.back = nn.Linear(deepest, deepest)
-        self.gather = nn.Conv2d(widths[0], GATHERED, 1)
+        self.gather = _Gather(widths[0])
         self.weigh = nn.Sequential(
-            nn.Linear(deepest + 3 * GATHERED, deepest), nn.ReLU(), nn.Linear(deepest, deepest)
+            nn.Linear(deepest + 3 * GATHERED + 2, deepest), nn.ReLU(), nn.Linear(deepest, deepest)
         )
         self.globals = nn.Linear(deepest, globals)
+        self.balanced = nn.Linear(2, globals, bias=False)
         self.up = nn.ModuleList(_Merge(coarse, fine) for fine, coarse in reversed(pairs))
         self.head = _Head(widths[0], deepest, maps)
 
@@ -68,26 +73,41 @@ class SkinEncoder(nn.Module):
         for merge in self.up:
             x = merge(x, features.pop())
         log = torch.log(linear + _DARKEST)
-        colours = self._gathered(x, log)
-        scene = scene + self.weigh(torch.cat([scene, colours], 1))
+        colours, balance = self.gather(x, log)
+        scene = scene + self.weigh(torch.cat([scene, colours, balance], 1))
         pixel = torch.cat([srgb, linear, 0.5 * log], 1)
-        return self.head(pixel, x, scene), self.globals(scene)
+        return self.head(pixel, x, scene), self.globals(scene) + self.balanced(balance)
 
-    def _gathered(
+
+class _Gather(nn.Module):
+    """The mean log colours of places that the network attends to, and the light's tint.
+
+    The white of an eye, a shirt or a grey wall tells the white balance, which an average of
+    features blurs. Each place has the chroma that it should have taken off its own, and a vote as
+    strong as the network trusts it (Hu et al. 2017, FC4).
+    """
+
+    def __init__(self, features: int):
+        super().__init__()
+        self.look = nn.Conv2d(features + 3, VOTING, 3, padding=1)
+        self.attend = nn.Conv2d(VOTING, GATHERED + 1, 1)
+        self.expect = nn.Conv2d(VOTING, 2, 1)
+
+    def forward(
         self,
         features: Float[Tensor, "batch f h w"],
         log: Float[Tensor, "batch 3 height width"],
-    ) -> Float[Tensor, "batch gathered"]:
-        """Mean log colours of the places that the network attends to.
-
-        The white of an eye or a grey wall tells the white balance, which an average of features
-        blurs (Hu et al. 2017, FC4).
-        """
-        attention = self.gather(features).flatten(2).softmax(-1).float()
-        small = F.interpolate(log, size=features.shape[-2:], mode="bilinear").flatten(2)
-        # Not a matrix product, which would run in the trunk's precision.
-        colours: Tensor = (attention[:, :, None] * small[:, None]).sum(-1)
-        return colours.flatten(1)
+    ) -> tuple[Float[Tensor, "batch gathered"], Float[Tensor, "batch 2"]]:
+        """Colours of the places, and the votes' log R/G and log B/G in units of a tenth."""
+        small = F.interpolate(log, size=features.shape[-2:], mode="bilinear")
+        seen = self.look(torch.cat([features, small], 1)).relu()
+        attention = self.attend(seen).flatten(2).softmax(-1).float()
+        *places, voters = attention.unbind(1)
+        chroma = 10 * (small[:, ::2] - small[:, 1:2]) - self.expect(seen)
+        # Sums, for matrix products would run in the trunk's precision, and light in an image is
+        # known to better than eight bits.
+        colours = (torch.stack(places, 1)[:, :, None] * small.flatten(2)[:, None]).sum(-1)
+        return colours.flatten(1), (voters[:, None] * chroma.flatten(2)).sum(-1)
 
 
 class _Head(nn.Module):

@@ -20,7 +20,13 @@ Map = Float[Tensor, "batch height width"]
 Scalar = Float[Tensor, ""]
 
 WHITE_BALANCE_SD = 0.05
-"""Spread of the errors of a camera's white balance in log R/G and log B/G."""
+"""Spread allowed to the errors of a camera's white balance in log R/G and log B/G."""
+
+SPREAD = 0.066, 0.024
+"""Standard deviations of melanin and hemoglobin over the twin's skin."""
+
+LIT = 0.85
+"""Mean shading of the twin's skin."""
 
 _DARKEST = 1e-3
 _FAINT = 1e-4
@@ -74,6 +80,18 @@ def skin_mask(maps: SkinMaps, mask: Map) -> Scalar:
     return -(mask * skin.log() + (1 - mask) * (1 - skin).log()).mean()
 
 
+def overlap(maps: SkinMaps, mask: Map) -> Scalar:
+    """What the skin mask lacks of an intersection over union of one; skin is a mask above one half.
+
+    A cross entropy alone lets thin beards and loose hair stay near one half on either side.
+    """
+    skin, over = (mask > 0.5).to(mask), (-2, -1)
+    common = (maps.mask * skin).sum(over)
+    whole = (maps.mask + skin).sum(over) - common
+    # One pixel more in both, so that no skin found where there is none is right.
+    return (1 - (common + 1) / (whole + 1)).mean()
+
+
 def pigments(maps: SkinMaps, truth: SkinMaps) -> Scalar:
     """Mean absolute error of both pigments on true skin, in cube roots of their range.
 
@@ -82,6 +100,32 @@ def pigments(maps: SkinMaps, truth: SkinMaps) -> Scalar:
     melanin = _root(maps.melanin, F_MEL_MAX) - _root(truth.melanin, F_MEL_MAX)
     blood = _root(maps.hemoglobin, F_BLOOD_MAX) - _root(truth.hemoglobin, F_BLOOD_MAX)
     return _mean(melanin.abs() + blood.abs(), truth.mask)
+
+
+def fractions(maps: SkinMaps, truth: SkinMaps) -> Scalar:
+    """Mean squared error of both pigments on true skin, in standard deviations of each.
+
+    `pigments` is of typical errors and of all skin alike; this one is of the largest, which are
+    those of dark skin and of much blood.
+    """
+    melanin, blood = (
+        ((guess - true) / spread) ** 2
+        for guess, true, spread in zip(maps[:2], truth[:2], SPREAD, strict=True)
+    )
+    return _mean(melanin + blood, truth.mask)
+
+
+def leak(maps: SkinMaps, truth: SkinMaps) -> Scalar:
+    """Minus the mean product of melanin's error, in cube roots, and of the true shading beyond
+    `LIT`, cut off at 2.
+
+    Pale skin in little light looks as dark skin in much of it does, and whoever guesses best
+    between them says too little melanin where the light is strong. Its weight is the Lagrange
+    multiplier of asking that errors do not follow the light; more than needed turns the sign, and
+    with seven eighths of the weight of `pigments` or more it has no minimum.
+    """
+    error = _root(maps.melanin, F_MEL_MAX) - _root(truth.melanin, F_MEL_MAX)
+    return -_mean(error * (truth.shading.clamp_max(2) - LIT), truth.mask)
 
 
 def steadiness(maps: SkinMaps, mask: Map) -> Scalar:
@@ -96,11 +140,13 @@ def steadiness(maps: SkinMaps, mask: Map) -> Scalar:
 
 
 def lighting(maps: SkinMaps, truth: SkinMaps) -> Scalar:
-    """Mean absolute error of shading and offset, and ten times the squared one of root specular.
+    """Mean absolute error of shading and, on skin, of the offset, and ten times the squared one of
+    root specular.
 
-    Most skin has next to no gloss, so that an absolute error is least where none is ever seen.
+    Off skin the offset is the photograph itself, which lens and tone curve have changed. Most skin
+    has next to no gloss, so that an absolute error is least where none is ever seen.
     """
-    offset = (maps.offset - truth.offset).abs().mean(1)
+    offset = (maps.offset - truth.offset).abs().mean(1) * truth.mask
     gloss = (maps.specular + _FAINT).sqrt() - (truth.specular + _FAINT).sqrt()
     return (offset + 10 * gloss**2 + (maps.shading - truth.shading).abs()).mean()
 

@@ -4,17 +4,15 @@ import json
 from dataclasses import asdict
 from pathlib import Path
 
-import torch
 from safetensors import SafetensorError, safe_open
 from safetensors.torch import save
 from torch import Tensor
 
 from skinnet import __version__
-from skinnet.autoencoder import AutoencoderConfig, SkinAutoencoder
+from skinnet.autoencoder import FORMAT, AutoencoderConfig, SkinAutoencoder
 from skinnet.errors import InputError
 
 KIND = "autoencoder"
-FORMAT = "2"
 SHIPPED = Path(__file__).parent / "models" / "skin.safetensors"
 
 
@@ -22,7 +20,7 @@ def save_weights(model: SkinAutoencoder, path: str | Path, trained_on: str) -> N
     """Write the weights and the configuration of `model`; `trained_on` says what made them."""
     metadata = {
         "skinnet.kind": KIND,
-        "skinnet.format": FORMAT,
+        "skinnet.format": str(FORMAT),
         "skinnet.version": __version__,
         "skinnet.config": json.dumps(asdict(model.config)),
         "skinnet.trained_on": trained_on,
@@ -40,10 +38,13 @@ def load_weights(path: str | Path = SHIPPED) -> SkinAutoencoder:
     Raises `InputError` for a file that is missing, truncated, not ours or of another format.
     """
     metadata, state = read_weights(path)
-    fields = json.loads(metadata["skinnet.config"])
-    config = AutoencoderConfig(**{**fields, "widths": tuple(fields["widths"])})
-    model = SkinAutoencoder(config)
-    model.load_state_dict(state)
+    try:
+        fields = json.loads(metadata["skinnet.config"])
+        config = AutoencoderConfig(**{**fields, "widths": tuple(fields["widths"])})
+        model = SkinAutoencoder(config)
+        model.load_state_dict(state)
+    except (KeyError, TypeError, ValueError, RuntimeError) as error:
+        raise InputError(f"{path} does not hold the model that it describes.") from error
     return model.eval()
 
 
@@ -59,14 +60,9 @@ def read_weights(path: str | Path) -> tuple[dict[str, str], dict[str, Tensor]]:
         raise InputError(f"{path} is no complete safetensors file ({error}).") from error
     if metadata.get("skinnet.kind") != KIND:
         raise InputError(f"{path} holds no skinnet weights; it was written by something else.")
-    if metadata.get("skinnet.format") != FORMAT:
+    if metadata.get("skinnet.format") != str(FORMAT):
         raise InputError(
             f"{path} has format {metadata.get('skinnet.format')}, this skinnet reads {FORMAT}; "
             f"it was written by version {metadata.get('skinnet.version')}."
         )
     return metadata, state
-
-
-def count_weights(model: torch.nn.Module) -> int:
-    """Number of trained weights."""
-    return sum(parameter.numel() for parameter in model.parameters())

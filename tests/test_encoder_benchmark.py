@@ -64,7 +64,8 @@ def test_its_keys_are_the_contract(found: dict[str, Any]) -> None:
     assert found["constant"]["melanin"]["r_pixel"] is None
     assert all(value is not None for _, value in targets.flat(found["stage2"]))
     assert json.loads(json.dumps(found, allow_nan=False))["settings"]["samples"] == 4
-    assert found["settings"]["weights"] == {}
+    assert found["settings"]["weights"] == {} and found["explained"]["stage2"] > 0
+    assert targets.not_beaten(found | {"stage2": None}) is None
 
 
 def test_its_table_has_a_line_a_column_with_what_is_asked(found: dict[str, Any]) -> None:
@@ -137,7 +138,7 @@ def test_a_photograph_is_composed_as_the_decoder_does(model: SkinAutoencoder) ->
     photograph = astronaut()[:32, :32].copy()
     maps, capture = NetworkReader(model)(photograph)
     reading = model(torch.from_numpy(photograph).movedim(-1, 0)[None] / 255)
-    image = composed(maps, capture, model.decoder)[1]
+    image = composed(maps, capture, model.decoder).image
     assert torch.allclose(image, reading.reconstruction, atol=1e-5)
     assert NetworkReader(model)(astronaut()[:50, :40].copy())[0].offset.shape == (1, 3, 50, 40)
 

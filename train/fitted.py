@@ -182,6 +182,8 @@ def shrunk(texture: SkinTexture, texels: int) -> tuple[NDArray[np.float32], NDAr
 def shots(mesh: Path, count: int, size: int, draw: np.random.Generator) -> list[View]:
     """A textured face from some sides, the first from ahead."""
     scene = Scene(read_mesh(mesh))
+    if scene.mesh.uv is None:
+        raise InputError(f"{mesh} has no texture coordinates; `skinnet maps` writes such faces.")
     angles = draw.normal(0, (TURN, TILT), (count, 2)).clip((-60, -20), (60, 20))
     angles[0] = 0
     return [_shot(scene, size, *one) for one in angles]

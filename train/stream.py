@@ -8,6 +8,8 @@ from torch import distributed
 from torch.utils.data import DataLoader, Dataset
 from torch.utils.data.distributed import DistributedSampler
 
+from skinnet.errors import InputError
+
 
 class StreamSampler(DistributedSampler[int]):
     """Places in an endless stream: from the first not yet seen to the end of its epoch.
@@ -61,10 +63,19 @@ class StreamLoader(DataLoader[Any]):
 
 
 def seen_samples(trainer: Trainer | None, batch_size: int) -> int:
-    """Samples that this process has trained on, over all epochs and interruptions."""
+    """Samples that this process has trained on, over all epochs and interruptions.
+
+    Raises `InputError` where gradients are accumulated: an epoch's last step may then be of fewer
+    batches, and what was seen does not follow from the steps.
+    """
     if trainer is None:
         return 0
-    return int(trainer.global_step * trainer.accumulate_grad_batches * batch_size)
+    if trainer.accumulate_grad_batches != 1:
+        raise InputError(
+            f"--trainer.accumulate_grad_batches is {trainer.accumulate_grad_batches}; leave it at "
+            "1 and give a larger batch_size, or more processes."
+        )
+    return int(trainer.global_step * batch_size)
 
 
 def processes() -> tuple[int, int]:

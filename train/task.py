@@ -28,23 +28,26 @@ Batches = Batch | dict[str, Batch]
 
 @dataclass
 class LossWeights:
-    """Weight of each loss. The first three count on every picture; mask, pigments, lighting and
-    white balance where there is truth; a guessed mask, steadiness and the priors, which stand in
-    for it, where there is none."""
+    """Weight of each loss. The first three count on every picture; mask, overlap, pigments,
+    fractions, leak, lighting and white balance where there is truth; a guessed mask, steadiness and
+    the priors, which stand in for it, where there is none."""
 
     appearance: NonNegativeFloat = 4.0
     elsewhere: NonNegativeFloat = 0.2
     offset: NonNegativeFloat = 2.0
-    mask: NonNegativeFloat = 1.0
+    mask: NonNegativeFloat = 2.0
+    overlap: NonNegativeFloat = 1.0
     camera: NonNegativeFloat = 0.005
     specular: NonNegativeFloat = 0.01
     smoothness: NonNegativeFloat = 0.02
     shading: NonNegativeFloat = 0.02
     pigments: NonNegativeFloat = 8.0
+    fractions: NonNegativeFloat = 1.0
+    leak: NonNegativeFloat = 3.0
     lighting: NonNegativeFloat = 1.0
-    white_balance: NonNegativeFloat = 0.5
+    white_balance: NonNegativeFloat = 2.0
     steadiness: NonNegativeFloat = 4.0
-    mask_guess: NonNegativeFloat = 0.2
+    mask_guess: NonNegativeFloat = 0.05
 
 
 class SkinTask(LightningModule):
@@ -181,22 +184,35 @@ def _size(batch: Batches) -> int:
 
 def terms(reading: Reading, batch: Batch) -> dict[str, Tensor]:
     """Every loss that counts on this batch, by its name in `LossWeights`."""
-    linear = rgb_to_linear_rgb(batch.photograph)
-    maps, mask = reading.maps, batch.mask
+    linear, mask = rgb_to_linear_rgb(batch.photograph), batch.mask
     parts = {
         "appearance": losses.appearance(reading.reconstruction, linear, mask),
         "elsewhere": losses.appearance(reading.reconstruction, linear, 1 - mask),
-        "offset": losses.offset_penalty(maps, mask),
+        "offset": losses.offset_penalty(reading.maps, mask),
     }
     if batch.truth is not None and batch.capture is not None:
-        return parts | {
-            "mask": losses.skin_mask(maps, mask),
-            "pigments": losses.pigments(maps, batch.truth),
-            "lighting": losses.lighting(maps, batch.truth),
-            "white_balance": losses.white_balance(reading.capture, batch.capture),
-        }
-    if batch.twice:
-        parts["steadiness"] = losses.steadiness(maps, mask)
+        return parts | supervised(reading, batch.truth, batch.capture)
+    return parts | unsupervised(reading, batch, linear)
+
+
+def supervised(reading: Reading, truth: SkinMaps, capture: Capture) -> dict[str, Tensor]:
+    """The losses beside a known truth."""
+    maps = reading.maps
+    return {
+        "mask": losses.skin_mask(maps, truth.mask),
+        "overlap": losses.overlap(maps, truth.mask),
+        "pigments": losses.pigments(maps, truth),
+        "fractions": losses.fractions(maps, truth),
+        "leak": losses.leak(maps, truth),
+        "lighting": losses.lighting(maps, truth),
+        "white_balance": losses.white_balance(reading.capture, capture),
+    }
+
+
+def unsupervised(reading: Reading, batch: Batch, linear: Tensor) -> dict[str, Tensor]:
+    """The priors that stand in for a truth; `linear` is the photograph in linear sRGB."""
+    maps, mask = reading.maps, batch.mask
+    parts = {"steadiness": losses.steadiness(maps, mask)} if batch.twice else {}
     return parts | {
         "mask_guess": losses.skin_mask(maps, mask),
         "camera": losses.camera_prior(reading.capture),

@@ -10,6 +10,7 @@ import onnx
 import onnxruntime
 import pytest
 import torch
+from safetensors.torch import save_file
 
 from export.__main__ import main
 from skinnet.autoencoder import AutoencoderConfig, SkinAutoencoder
@@ -79,8 +80,6 @@ def test_outputs_lie_in_their_stated_ranges(exported: Path) -> None:
 def test_what_is_no_model_is_refused(
     suffix: str, content: bytes | str | None, tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    from safetensors.torch import save_file
-
     path = tmp_path / f"model{suffix}"
     if content == "foreign" and suffix == ".ckpt":
         torch.save({"state_dict": {}}, path)
@@ -98,6 +97,41 @@ def test_another_format_is_refused(tmp_path: Path, capsys: pytest.CaptureFixture
     torch.save({"skinnet": {"format": 99, "version": "9.0"}, "state_dict": {}}, path)
     assert main([str(path)]) == 2
     assert "format 99" in capsys.readouterr().err
+
+
+def test_weights_of_an_earlier_format_are_refused(
+    exported: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    metadata, state = read_weights(exported.with_suffix(".safetensors"))
+    path = tmp_path / "old.safetensors"
+    save_file(state, path, metadata | {"skinnet.format": "2"})
+    assert main([str(path)]) == 2
+    assert "format 2, this skinnet reads" in capsys.readouterr().err
+
+
+def test_weights_that_are_not_those_described_are_refused(
+    exported: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    metadata, state = read_weights(exported.with_suffix(".safetensors"))
+    path = tmp_path / "other.safetensors"
+    for wrong in (
+        (state, metadata | {"skinnet.config": "{}"}),
+        (state, metadata | {"skinnet.config": "no json"}),
+        ({"a": torch.zeros(1)}, metadata),
+    ):
+        save_file(wrong[0], path, wrong[1])
+        assert main([str(path)]) == 2
+        assert f"{path} does not hold the model" in capsys.readouterr().err
+
+
+def test_the_weights_that_are_exported_are_not_overwritten(
+    exported: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    path = tmp_path / "mine.safetensors"
+    path.write_bytes(exported.with_suffix(".safetensors").read_bytes())
+    assert main([str(path), "-o", str(tmp_path / "mine.onnx"), "--half"]) == 2
+    assert "would be overwritten" in capsys.readouterr().err
+    assert path.read_bytes() == exported.with_suffix(".safetensors").read_bytes()
 
 
 def test_a_truncated_weights_file_is_refused(

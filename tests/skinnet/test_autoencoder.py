@@ -1,5 +1,7 @@
 """Encoder and controls: any size in, physical ranges out."""
 
+from copy import deepcopy
+
 import pytest
 import torch
 
@@ -46,7 +48,8 @@ def test_the_reconstruction_is_the_decoder_s(model: SkinAutoencoder) -> None:
 
 @pytest.mark.parametrize("raw", [-1e4, -3.0, 0.0, 3.0, 1e4])
 def test_controls_stay_in_their_ranges(raw: float) -> None:
-    maps, capture = controls(torch.full((1, MAPS, 2, 2), raw), torch.full((1, GLOBALS), raw))
+    white = torch.ones(1, 3, 2, 2)
+    maps, capture = controls(torch.full((1, MAPS, 2, 2), raw), torch.full((1, GLOBALS), raw), white)
     for value, low, high in (
         (maps.melanin, 0, F_MEL_MAX),
         (maps.hemoglobin, 0, F_BLOOD_MAX),
@@ -63,18 +66,39 @@ def test_controls_stay_in_their_ranges(raw: float) -> None:
 
 
 def test_raw_zero_is_ordinary_skin_in_ordinary_light() -> None:
-    maps, capture = controls(torch.zeros(1, MAPS, 1, 1), torch.zeros(1, GLOBALS))
+    raw = torch.zeros(1, MAPS, 1, 1), torch.zeros(1, GLOBALS)
+    maps, capture = controls(*raw, torch.zeros(1, 3, 1, 1))
     assert 0.02 < maps.melanin.item() < 0.1 and 0.01 < maps.hemoglobin.item() < 0.05
     assert maps.shading.item() == pytest.approx(1, abs=0.02) and maps.specular.item() < 0.05
     assert 5000 < capture.temperature.item() < 8000
     assert capture.camera.abs().max() == 0 and capture.white_balance.abs().max() == 0
 
 
+def test_without_skin_the_offset_is_the_photograph() -> None:
+    raw, linear = torch.zeros(1, MAPS, 2, 2), torch.rand(1, 3, 2, 2)
+    raw[:, -1] = torch.tensor([[-1e4, 0.0], [1e4, 0.0]])
+    raw.requires_grad_()
+    maps, _ = controls(raw, torch.zeros(1, GLOBALS), linear)
+    left = torch.tensor([[1.0, 0.5], [0.0, 0.5]])
+    torch.testing.assert_close(maps.offset, left * linear)
+    (slope,) = torch.autograd.grad(maps.offset.sum(), raw)
+    assert not slope[:, -1].any()
+    torch.testing.assert_close(slope[:, 4:7], (1 - left).expand(1, 3, 2, 2))
+
+
+def test_votes_reach_the_white_balance_directly(model: SkinAutoencoder) -> None:
+    model, photograph = deepcopy(model), torch.rand(1, 3, 24, 20)
+    with torch.no_grad():
+        model.encoder.weigh[-1].weight.zero_()  # the other way
+        before = model.encode(photograph)[1].white_balance
+        model.encoder.gather.expect.bias += 0.1
+        assert (model.encode(photograph)[1].white_balance != before).all()
+
+
 def test_controls_of_half_precision_are_float32_and_float64_stays() -> None:
     for given, kept in ((torch.bfloat16, torch.float32), (torch.float64, torch.float64)):
-        maps, capture = controls(
-            torch.zeros(1, MAPS, 2, 2, dtype=given), torch.zeros(1, GLOBALS, dtype=given)
-        )
+        raw = torch.zeros(1, MAPS, 2, 2, dtype=given), torch.zeros(1, GLOBALS, dtype=given)
+        maps, capture = controls(*raw, torch.zeros(1, 3, 2, 2))
         assert maps.melanin.dtype == kept and capture.light.dtype == kept
 
 

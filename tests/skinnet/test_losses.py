@@ -31,6 +31,8 @@ def test_a_perfect_reading_costs_nothing() -> None:
     ones = torch.ones(2, 8, 8)
     assert losses.appearance(photograph, photograph, ones) == 0
     assert losses.pigments(truth, truth) == 0 and losses.lighting(truth, truth) == 0
+    assert losses.fractions(truth, truth) == 0 and losses.leak(truth, truth) == 0
+    assert losses.overlap(truth, ones) == pytest.approx(0, abs=1e-6)
     assert losses.camera_prior(capture()) == 0
     assert losses.offset_penalty(truth, ones) == 0
     assert losses.shading_smoothness(truth, ones) == 0
@@ -51,6 +53,40 @@ def test_pigments_are_compared_in_cube_roots() -> None:
     truth, guess = maps(), maps(melanin=torch.full((2, 8, 8), 8 * 0.05))
     root = (0.05 / 0.43) ** (1 / 3)
     assert losses.pigments(guess, truth).item() == pytest.approx(root, abs=1e-4)
+
+
+def test_fractions_are_compared_in_their_spreads() -> None:
+    melanin, blood = losses.SPREAD
+    guess = maps(melanin=0.05 + torch.full((2, 8, 8), 2 * melanin))
+    assert losses.fractions(guess, maps()).item() == pytest.approx(4, rel=1e-4)
+    guess = maps(hemoglobin=0.05 - torch.full((2, 8, 8), blood))
+    assert losses.fractions(guess, maps()).item() == pytest.approx(1, rel=1e-4)
+
+
+def test_a_leak_rewards_an_error_that_rises_with_the_light() -> None:
+    # The gradient tilts an absolute error towards more melanin where the light is strong.
+    shading = torch.linspace(0, 2 * losses.LIT, 64).reshape(1, 8, 8).expand(2, 8, 8)
+    guess = torch.full((2, 8, 8), 0.05, requires_grad=True)
+    bright = maps(shading=torch.full((2, 8, 8), 9.0))
+    more = (0.1 / F_MEL_MAX) ** (1 / 3) - (0.05 / F_MEL_MAX) ** (1 / 3)
+    cut = losses.leak(maps(melanin=torch.full((2, 8, 8), 0.1)), bright)
+    assert cut.item() == pytest.approx(-more * (2 - losses.LIT), rel=1e-4)
+    found = losses.leak(maps(melanin=guess), maps(shading=shading))
+    assert found.item() == pytest.approx(0, abs=1e-6)
+    (slope,) = torch.autograd.grad(found, guess)
+    assert (slope[shading > losses.LIT] < 0).all() and (slope[shading < losses.LIT] > 0).all()
+
+
+def test_overlap_is_of_what_counts_as_skin() -> None:
+    skin = torch.zeros(2, 8, 8)
+    skin[:, :4] = 0.6
+    skin[:, 4:] = 0.4
+    guess = torch.zeros(2, 8, 8)
+    guess[:, 2:6] = 1
+    assert losses.overlap(maps(mask=guess), skin).item() == pytest.approx(1 - 17 / 49)
+    nothing = maps(mask=torch.zeros(2, 8, 8))
+    assert losses.overlap(nothing, 0.1 * skin) == 0
+    assert losses.overlap(maps(), 0.1 * skin) > 0.9
 
 
 def test_shading_pseudo_leaves_the_level_open() -> None:
@@ -94,6 +130,9 @@ def test_the_loss_of_a_batch_is_the_mean_of_those_of_its_halves() -> None:
             losses.offset_penalty(one, mask[part]),
             losses.skin_mask(one, mask[part]),
             losses.pigments(one, other),
+            losses.fractions(one, other),
+            losses.leak(one, other),
+            losses.overlap(one, mask[part]),
             losses.lighting(one, other),
         ])  # fmt: skip
 
@@ -115,6 +154,9 @@ def test_gradients_are_finite_at_the_edges() -> None:
     found = SkinMaps(*guess)
     total = (
         losses.pigments(found, truth)
+        + losses.fractions(found, truth)
+        + losses.leak(found, truth)
+        + losses.overlap(found, 0 * truth.mask)
         + losses.lighting(found, truth)
         + losses.shading_smoothness(found, truth.mask)
         + losses.skin_mask(found, 0 * truth.mask)

@@ -42,8 +42,9 @@ def test_torch_and_onnxruntime_agree() -> None:
     codes = encoder.run({"image": photograph})
     with torch.no_grad():
         reading = load_weights()(torch.from_numpy(photograph).movedim(-1, 1) / 255)
-    for name in ("melanin", "hemoglobin", "shading", "mask"):
-        assert np.abs(codes[name] - getattr(reading.maps, name).numpy()).max() < 1e-3
+    maps = reading.maps._replace(offset=reading.maps.offset.movedim(1, -1))
+    for name in ("melanin", "hemoglobin", "shading", "mask", "offset"):
+        assert np.abs(codes[name] - getattr(maps, name).numpy()).max() < 1e-3
     image = decoder.run({name: value for name, value in codes.items() if name != "mask"})["image"]
     expected = srgb(reading.reconstruction).movedim(1, -1).numpy()
     assert np.abs(image - expected).max() < 2e-3

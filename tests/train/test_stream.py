@@ -2,7 +2,11 @@
 
 from itertools import islice
 
-from train.stream import StreamLoader, StreamSampler
+import pytest
+from lightning import Trainer
+
+from skinnet.errors import InputError
+from train.stream import StreamLoader, StreamSampler, seen_samples
 
 
 def test_an_epoch_starts_at_what_was_seen_and_ends_where_it_would_have_ended() -> None:
@@ -21,3 +25,11 @@ def test_a_loader_has_whole_batches_only() -> None:
     loader = StreamLoader(list(range(100)), 4, 10, lambda: 0)  # type: ignore[arg-type]
     assert [batch.tolist() for batch in islice(loader, 5)] == [[0, 1, 2, 3], [4, 5, 6, 7]]
     assert len(loader) == 2
+
+
+def test_accumulated_gradients_are_refused() -> None:
+    quiet = {"logger": False, "enable_checkpointing": False, "enable_progress_bar": False}
+    assert seen_samples(Trainer(accelerator="cpu", **quiet), 8) == 0
+    trainer = Trainer(accelerator="cpu", accumulate_grad_batches=3, **quiet)
+    with pytest.raises(InputError, match="accumulate_grad_batches is 3"):
+        seen_samples(trainer, 8)

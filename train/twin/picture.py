@@ -50,7 +50,7 @@ def render(lot: dict[str, Tensor], decoder: SkinDecoder, split: str = "train") -
     """Photographs of a batch of lots, each with the buffers of a head, and their truth.
 
     On skin the picture is shading * skin + specular under the measured camera; elsewhere the truth
-    is no shading and an offset that is the picture itself.
+    is no shading and an offset that is the light itself, before lens and tone curve.
     """
     ground = _ground(lot)
     over = _sampled(paint_skin(lot), ground.chart)

@@ -73,10 +73,10 @@ def draw_skins(
     chart, NaN outside the face. What is no skin is filled from around, what is broad damped, and
     the border fades, so that a skin's mean over the face is 0.
     """
-    if count < 1 or not 0 <= spread <= 10:
+    if count < 1 or seed < 0 or not 0 <= spread <= 10:
         raise InputError(
-            "Skins are drawn in a count of 1 or more and a spread in [0, 10]; got "
-            f"{count} and {spread}."
+            "Skins are drawn in a count of 1 or more, by a seed of 0 or more, in a spread in "
+            f"[0, 10]; got {count}, {seed} and {spread}."
         )
     skin, lips = bare()
     known = _sampled(model.mask[None].astype(np.float32), place)[0]

@@ -9,6 +9,7 @@ import torch
 from kornia.color import rgb_to_linear_rgb
 from torch.utils.data import default_collate
 
+from skinnet import losses
 from skinnet.autoencoder import F_BLOOD_MAX, F_MEL_MAX
 from skinnet.camera import SpectralCamera
 from skinnet.decoder import SkinDecoder, srgb
@@ -175,6 +176,16 @@ def test_paint_covers_shares_of_the_chart(lot: Lot) -> None:
     paint = paint_skin(lot)
     assert paint.cover.min() >= 0 and paint.cover.max() <= 1
     assert paint.paint.min() >= 0 and paint.oil.min() > 0
+
+
+def test_the_losses_know_the_spread_of_skin_and_its_light(data: TwinFaces) -> None:
+    lots = Lots(data.buffers["train"], "train", 96, seed=0)
+    truth = data.render(default_collate([lots[index] for index in range(96)]), "train").truth
+    assert truth is not None
+    skin = truth.mask > 0.5
+    for values, spread in zip(truth[:2], losses.SPREAD, strict=True):
+        assert values[skin].std().item() == pytest.approx(spread, rel=0.2)
+    assert truth.shading[skin].mean().item() == pytest.approx(losses.LIT, rel=0.15)
 
 
 def test_lots_cover_pale_and_dark_skin_evenly() -> None:
