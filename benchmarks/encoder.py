@@ -9,11 +9,11 @@ truth itself; the encoder after its first stage and as it is shipped. Networks s
 see: the picture at their working size, and their maps brought back. Then real portraits, where
 `../shared/data/faces` is there. The training mean is that of training's own first lots and
 cameras, on the validation's heads at 64 px. RMSE on BioFaceNet's grid is of
-2 (f / f_max)^(1/3) - 1 with f_max .43 and .07, not clipped at its ends. `explained` is the error
-of the reconstruction without its offset, which takes up what skin does not explain and, where the
-mask says that there is none, is the photograph itself. `leak` is the correlation of predicted
-minus true melanin with the true shading; `group_ratio` the worst skin tone's RMSE of melanin
-relative to its own mean, over the best's.
+2 (f / f_max)^(1/3) - 1 with f_max .43 and .07, not clipped at its ends. `reconstruction` is cut off
+at 1, as a photograph is; `explained` is its error without the offset, which is the photograph by
+the share that the mask leaves and so hides what is missed of the skin. `leak` is the correlation of
+predicted minus true melanin with the true shading; `group_ratio` the worst skin tone's RMSE of
+melanin relative to its own mean, over the best's.
 """
 
 import platform

@@ -48,7 +48,8 @@ def resized(maps: SkinMaps, height: int, width: int) -> SkinMaps:
 
 class Composed(NamedTuple):
     """Linear sRGB [1, 3, height, width] of the skin itself, of what light and gloss make of it, and
-    of the photograph, which has the offset too."""
+    of the photograph, which has the offset too. The last two are cut off at 1, as a photograph is.
+    """
 
     albedo: Tensor
     explained: Tensor
@@ -62,7 +63,7 @@ def composed(maps: SkinMaps, capture: Capture, decoder: SkinDecoder) -> Composed
     white = matrix.sum(-2)[..., None, None]
     gloss = maps.specular[:, None] * white
     explained = maps.shading[:, None] * albedo + gloss
-    return Composed(albedo, explained, explained + maps.offset)
+    return Composed(albedo, explained.clamp(0, 1), (explained + maps.offset).clamp(0, 1))
 
 
 class Encoder:

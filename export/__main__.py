@@ -20,7 +20,15 @@ def main(arguments: Sequence[str] | None = None) -> int:
         "beside it the decoder, .decoder.onnx, and the weights, .safetensors.",
     )
     parser.add_argument("checkpoint", type=Path, help="a .ckpt of training, or .safetensors")
-    parser.add_argument("-o", "--output", type=Path, default=Path("skin.onnx"), metavar="FILE")
+    parser.add_argument(
+        "-o",
+        "--output",
+        type=Path,
+        default=Path("skin.onnx"),
+        metavar="FILE",
+        help="the encoder's file, replaced with the two beside it if they are there; default: "
+        "skin.onnx",
+    )
     parser.add_argument(
         "--half",
         action="store_true",
@@ -49,7 +57,10 @@ def _export(checkpoint: Path, output: Path, half: bool) -> None:
     if not output.parent.is_dir():
         raise InputError(f"{output.parent} is not a folder; make it first.")
     if checkpoint.resolve() == output.with_suffix(".safetensors").resolve():
-        raise InputError(f"{checkpoint} would be overwritten; give another name with -o.")
+        raise InputError(
+            f"{checkpoint} would be overwritten, since weights are written beside {output}; give "
+            "another name with -o."
+        )
     model, trained_on = _load(checkpoint)
     reports = export_model(model, output, trained_on, half)
     sizes = ", ".join("x".join(map(str, size)) for size in SIZES)

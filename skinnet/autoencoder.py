@@ -28,7 +28,7 @@ WHITE_BALANCE_MAX = 0.4
 MIRED = (40.0, 250.0)
 """Daylight in units in which its change is even to the eye, 25,000 K to 4,000 K."""
 
-MAPS = 8
+MAPS = 5
 GLOBALS = len(LIGHTS) + 1 + COMPONENTS + 2
 
 
@@ -37,8 +37,8 @@ class SkinMaps(NamedTuple):
 
     `melanin`, `hemoglobin`: melanosome and blood volume fractions, in [0, 0.43] and [0, 0.15].
     `shading`: diffuse shading relative to the light, in [0, 4]. `specular`: in [0, 1] of the
-    light. `offset`: linear sRGB of what the skin does not explain, in [-1, 1] (delta of the
-    paper's equation 11). `mask`: probability that the pixel is skin.
+    light. `offset`: linear sRGB of what is not skin, in [-1, 1] (delta of the paper's equation
+    11); what the encoder reads is in [0, 1]. `mask`: probability that the pixel is skin.
     """
 
     melanin: Float[Tensor, "*batch height width"]
@@ -50,18 +50,18 @@ class SkinMaps(NamedTuple):
 
 
 def controls(
-    maps: Float[Tensor, "batch 8 height width"],
+    maps: Float[Tensor, "batch 5 height width"],
     globals: Float[Tensor, "batch globals"],
     linear: Float[Tensor, "batch 3 height width"],
 ) -> tuple[SkinMaps, Capture]:
     """Raw outputs of the encoder mapped smoothly to physical ranges, in float32 at least.
 
     Pigments are cubes of a sigmoid: even steps of the cube root of a fraction are about even steps
-    of colour, and both ends of the range can be reached. The offset is what the network says on
-    skin, and beside it the photograph itself, `linear` in linear sRGB, by the share of the mask.
+    of colour, and both ends of the range can be reached. The offset is the photograph, `linear` in
+    linear sRGB, by the share that the mask leaves: skin is explained by skin, the rest by itself.
     """
     maps, globals = _at_least_float32(maps), _at_least_float32(globals)
-    melanin, hemoglobin, shading, specular, *offset, mask = maps.unbind(1)
+    melanin, hemoglobin, shading, specular, mask = maps.unbind(1)
     light, temperature, camera, balance = globals.split([len(LIGHTS), 1, COMPONENTS, 2], -1)
     mired = MIRED[0] + (MIRED[1] - MIRED[0]) * temperature.squeeze(-1).sigmoid()
     capture = Capture(
@@ -72,14 +72,13 @@ def controls(
     )
     skin = mask.sigmoid()
     # Detached, or a photograph would be explained best by finding no skin in it.
-    share = skin.detach()[:, None]
-    rest = share * torch.stack(offset, 1) + (1 - share) * linear
+    rest = (1 - skin.detach())[:, None] * linear
     found = SkinMaps(
         F_MEL_MAX * melanin.sigmoid() ** 3,
         F_BLOOD_MAX * hemoglobin.sigmoid() ** 3,
         SHADING_MAX * (shading - 1.1).sigmoid(),
         (specular - 4).sigmoid(),
-        rest.clamp(-1, 1),
+        rest,
         skin,
     )
     return found, capture

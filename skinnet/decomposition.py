@@ -21,7 +21,8 @@ class Decomposition:
 
     image = shading * skin(melanin, hemoglobin) + specular + offset in linear RGB, under `light` and
     seen by `camera`; with detail this holds for every pixel of skin. `reconstruction` is made with
-    the offset of the network's size: what else skin does not explain is not in it.
+    the network's own offset, the photograph by the share that the mask leaves: what else skin does
+    not explain is not in it.
     Outside `box` nothing was looked at: maps are 0 there, and `reconstruction` is the photograph
     itself.
 

@@ -68,9 +68,9 @@ def shading_pseudo(maps: SkinMaps, photograph: Image, mask: Map) -> Scalar:
     return _mean((difference - level[:, None, None]).abs(), mask)
 
 
-def offset_penalty(maps: SkinMaps, mask: Map) -> Scalar:
-    """Offset on skin and shaded skin elsewhere: skin is explained by skin, and nothing else is."""
-    return (maps.offset.abs().mean(1) * mask + maps.shading * (1 - mask)).mean()
+def stray(maps: SkinMaps, mask: Map) -> Scalar:
+    """Mean shading of what is not skin: skin explains skin alone."""
+    return (maps.shading * (1 - mask)).mean()
 
 
 def skin_mask(maps: SkinMaps, mask: Map) -> Scalar:
@@ -140,15 +140,12 @@ def steadiness(maps: SkinMaps, mask: Map) -> Scalar:
 
 
 def lighting(maps: SkinMaps, truth: SkinMaps) -> Scalar:
-    """Mean absolute error of shading and, on skin, of the offset, and ten times the squared one of
-    root specular.
+    """Mean absolute error of shading, and ten times the squared one of root specular.
 
-    Off skin the offset is the photograph itself, which lens and tone curve have changed. Most skin
-    has next to no gloss, so that an absolute error is least where none is ever seen.
+    Most skin has next to no gloss, so that an absolute error is least where none is ever seen.
     """
-    offset = (maps.offset - truth.offset).abs().mean(1) * truth.mask
     gloss = (maps.specular + _FAINT).sqrt() - (truth.specular + _FAINT).sqrt()
-    return (offset + 10 * gloss**2 + (maps.shading - truth.shading).abs()).mean()
+    return (10 * gloss**2 + (maps.shading - truth.shading).abs()).mean()
 
 
 def white_balance(capture: Capture, truth: Capture) -> Scalar:

@@ -101,7 +101,7 @@ def check_checkpoint(subcommand: str, path: str | None) -> None:
         read_checkpoint(path)
 
 
-RUN_FILES = ("*.ckpt", "config.yaml", "metrics.csv", "events.out.tfevents.*", "skipped.csv")
+RUN_FILES = ("*.ckpt", "metrics.csv", "events.out.tfevents.*", "skipped.csv")
 """What training leaves in the folder of a run, even of one that came to nothing."""
 
 

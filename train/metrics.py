@@ -9,12 +9,12 @@ from train.batch import Batch
 
 
 def measure(reading: Reading, batch: Batch) -> dict[str, Tensor]:
-    """Errors over skin: `reconstruction` RMSE in linear sRGB, `mask_iou`, and where there is truth
-    the RMSE of `melanin` and `hemoglobin` in volume fractions, their correlation `_r`, and the RMSE
-    that the best constant would have, `_constant`."""
+    """Errors over skin: `reconstruction` RMSE in linear sRGB, cut off at 1, `mask_iou`, and where
+    there is truth the RMSE of `melanin` and `hemoglobin` in volume fractions, their correlation
+    `_r`, and the RMSE that the best constant would have, `_constant`."""
     skin = batch.mask > 0.5
     linear = rgb_to_linear_rgb(batch.photograph)
-    error = ((reading.reconstruction - linear) ** 2).mean(1)
+    error = ((reading.reconstruction.clamp(0, 1) - linear) ** 2).mean(1)
     found = {
         "reconstruction": error[skin].mean().sqrt(),
         "mask_iou": _overlap(reading.maps.mask > 0.5, skin),

@@ -114,11 +114,6 @@ class Portraits(LightningDataModule):
         self.unreadable_share = unreadable_share
         self.seed = seed
         self.twin = twin or TwinFaces(size=size, batch_size=batch_size)
-        if self.twin.size != size:
-            raise InputError(
-                f"Photographs are cut to {size} pixels and the twin's pictures have "
-                f"{self.twin.size}; give --data.init_args.size and .twin.size the same."
-            )
         self.crops: dict[str, list[Crop]] = {}
 
     @property
@@ -141,6 +136,13 @@ class Portraits(LightningDataModule):
         self.twin.setup(stage)
 
     def _find(self) -> None:
+        # Not when it is made: the parser would hide the sentence in its own.
+        if self.twin.size != self.size:
+            raise InputError(
+                f"Photographs are cut to {self.size} pixels and the twin's pictures have "
+                f"{self.twin.size}; give --data.init_args.size and --data.init_args.twin.size "
+                "the same number."
+            )
         crops, skipped = find_crops(self.folder, self.size, self.unreadable_share)
         if self.trainer is not None and self.trainer.is_global_zero:
             write_skipped(skipped, Path(self.trainer.default_root_dir) / "skipped.csv")

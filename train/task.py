@@ -34,7 +34,7 @@ class LossWeights:
 
     appearance: NonNegativeFloat = 4.0
     elsewhere: NonNegativeFloat = 0.2
-    offset: NonNegativeFloat = 2.0
+    stray: NonNegativeFloat = 2.0
     mask: NonNegativeFloat = 2.0
     overlap: NonNegativeFloat = 1.0
     camera: NonNegativeFloat = 0.005
@@ -188,7 +188,7 @@ def terms(reading: Reading, batch: Batch) -> dict[str, Tensor]:
     parts = {
         "appearance": losses.appearance(reading.reconstruction, linear, mask),
         "elsewhere": losses.appearance(reading.reconstruction, linear, 1 - mask),
-        "offset": losses.offset_penalty(reading.maps, mask),
+        "stray": losses.stray(reading.maps, mask),
     }
     if batch.truth is not None and batch.capture is not None:
         return parts | supervised(reading, batch.truth, batch.capture)

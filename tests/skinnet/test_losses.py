@@ -34,7 +34,7 @@ def test_a_perfect_reading_costs_nothing() -> None:
     assert losses.fractions(truth, truth) == 0 and losses.leak(truth, truth) == 0
     assert losses.overlap(truth, ones) == pytest.approx(0, abs=1e-6)
     assert losses.camera_prior(capture()) == 0
-    assert losses.offset_penalty(truth, ones) == 0
+    assert losses.stray(truth, ones) == 0
     assert losses.shading_smoothness(truth, ones) == 0
     assert losses.skin_mask(truth, ones) == pytest.approx(0, abs=1e-5)
 
@@ -101,8 +101,7 @@ def test_priors_grow_with_what_they_restrain() -> None:
     assert losses.camera_prior(capture(balance=0.05)).item() == pytest.approx(0.5)
     ones = torch.ones(2, 8, 8)
     assert losses.specular_sparsity(maps(specular=0.2 * ones), ones).item() == pytest.approx(0.2)
-    assert losses.offset_penalty(maps(offset=torch.full((2, 3, 8, 8), -0.1)), ones) > 0.09
-    assert losses.offset_penalty(maps(), 0 * ones) == 1
+    assert losses.stray(maps(), 0 * ones) == 1
 
 
 def test_white_balance_is_in_units_of_its_spread() -> None:
@@ -127,7 +126,7 @@ def test_the_loss_of_a_batch_is_the_mean_of_those_of_its_halves() -> None:
             losses.specular_sparsity(one, mask[part]),
             losses.shading_smoothness(one, mask[part]),
             losses.shading_pseudo(one, photograph[part], mask[part]),
-            losses.offset_penalty(one, mask[part]),
+            losses.stray(one, mask[part]),
             losses.skin_mask(one, mask[part]),
             losses.pigments(one, other),
             losses.fractions(one, other),

@@ -67,8 +67,8 @@ def test_the_reconstruction_resembles_the_photograph(
     found: Decomposition, skin: np.ndarray
 ) -> None:
     error = srgb_to_linear(found.reconstruction) - srgb_to_linear(astronaut())
-    assert np.sqrt((error[skin] ** 2).mean()) < 0.06
-    assert np.sqrt((error[found.box.slices] ** 2).mean()) < 0.08
+    assert np.sqrt((error[skin] ** 2).mean()) < 0.04
+    assert np.sqrt((error[found.box.slices] ** 2).mean()) < 0.04
 
 
 def test_edits_are_a_tan_and_a_flush(skin: np.ndarray) -> None:

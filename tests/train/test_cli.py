@@ -90,10 +90,10 @@ def test_a_folder_of_something_else_is_left_alone(
     fit: Fit, tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
     (tmp_path / "configs").mkdir()
-    (tmp_path / "configs" / "mine.yaml").write_text("precious")
+    (tmp_path / "configs" / "config.yaml").write_text("precious")
     assert fit(tmp_path / "configs", "--trainer.max_steps=1") == 2
     assert "configs holds files, but no run's" in capsys.readouterr().err
-    assert (tmp_path / "configs" / "mine.yaml").read_text() == "precious"
+    assert (tmp_path / "configs" / "config.yaml").read_text() == "precious"
 
 
 def test_a_file_in_the_place_of_the_run_gets_a_sentence(

@@ -165,7 +165,7 @@ def test_a_brighter_photograph_clips_and_keeps_its_mask() -> None:
 
 def test_sizes_that_differ_are_refused(tmp_path: Path) -> None:
     with pytest.raises(InputError, match="cut to 192 pixels and the twin's pictures have 160"):
-        Portraits(str(tmp_path), size=192, twin=TwinFaces(size=160))
+        Portraits(str(tmp_path), size=192, twin=TwinFaces(size=160)).setup("fit")
 
 
 @pytest.mark.filterwarnings("ignore:.isinstance.treespec")
