@@ -9,6 +9,7 @@ import torch
 from skinnet import __version__
 from skinnet.autoencoder import FORMAT, AutoencoderConfig, SkinAutoencoder
 from skinnet.errors import InputError
+from skinnet.weights import as_described
 
 _PREFIX = "model."
 
@@ -53,12 +54,10 @@ def load_checkpoint(path: str | Path) -> tuple[SkinAutoencoder, str]:
     """The model of a checkpoint, in evaluation mode, and what it was trained on."""
     checkpoint = read_checkpoint(path)
     note = checkpoint["skinnet"]
-    config = AutoencoderConfig(note["optics"], tuple(note["widths"]), note["working_size"])
-    model = SkinAutoencoder(config)
-    entries = checkpoint["state_dict"].items()
-    state = {name.removeprefix(_PREFIX): v for name, v in entries if name.startswith(_PREFIX)}
-    try:
+    with as_described(path):
+        config = AutoencoderConfig(note["optics"], tuple(note["widths"]), note["working_size"])
+        model = SkinAutoencoder(config)
+        entries = checkpoint["state_dict"].items()
+        state = {name.removeprefix(_PREFIX): v for name, v in entries if name.startswith(_PREFIX)}
         model.load_state_dict(state)
-    except RuntimeError as error:
-        raise InputError(f"{path} does not hold the model that it describes.") from error
-    return model.eval(), note["trained_on"]
+        return model.eval(), note["trained_on"]

@@ -102,12 +102,12 @@ class _Gather(nn.Module):
         small = F.interpolate(log, size=features.shape[-2:], mode="bilinear")
         seen = self.look(torch.cat([features, small], 1)).relu()
         attention = self.attend(seen).flatten(2).softmax(-1).float()
-        *places, voters = attention.unbind(1)
+        places, voters = attention.split([GATHERED, 1], 1)
         chroma = 10 * (small[:, ::2] - small[:, 1:2]) - self.expect(seen)
         # Sums, for matrix products would run in the trunk's precision, and light in an image is
         # known to better than eight bits.
-        colours = (torch.stack(places, 1)[:, :, None] * small.flatten(2)[:, None]).sum(-1)
-        return colours.flatten(1), (voters[:, None] * chroma.flatten(2)).sum(-1)
+        colours = (places[:, :, None] * small.flatten(2)[:, None]).sum(-1)
+        return colours.flatten(1), (voters * chroma.flatten(2)).sum(-1)
 
 
 class _Head(nn.Module):

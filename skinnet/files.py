@@ -42,6 +42,15 @@ def atomic(path: Path) -> Iterator[Path]:
         yield beside(path)
 
 
+def made(folder: Path, remedy: str) -> Path:
+    """The folder, made if needed; `InputError` with the remedy if it cannot be."""
+    try:
+        folder.mkdir(parents=True, exist_ok=True)
+    except OSError as error:
+        raise InputError(f"{folder} cannot be made ({error.strerror}); {remedy}.") from error
+    return folder
+
+
 def write_text(path: Path, text: str) -> None:
     """Write UTF-8 text atomically."""
     with atomic(path) as part:

@@ -1,6 +1,8 @@
 """Weights of an autoencoder as one safetensors file, with what is needed to rebuild it."""
 
 import json
+from collections.abc import Iterator
+from contextlib import contextmanager
 from dataclasses import asdict
 from pathlib import Path
 
@@ -11,6 +13,7 @@ from torch import Tensor
 from skinnet import __version__
 from skinnet.autoencoder import FORMAT, AutoencoderConfig, SkinAutoencoder
 from skinnet.errors import InputError
+from skinnet.files import atomic
 
 KIND = "autoencoder"
 SHIPPED = Path(__file__).parent / "models" / "skin.safetensors"
@@ -26,10 +29,8 @@ def save_weights(model: SkinAutoencoder, path: str | Path, trained_on: str) -> N
         "skinnet.trained_on": trained_on,
     }
     state = {name: value.detach().cpu().contiguous() for name, value in model.state_dict().items()}
-    target = Path(path)
-    beside = target.with_name(f".{target.name}.part")
-    beside.write_bytes(save(state, metadata))
-    beside.replace(target)
+    with atomic(Path(path)) as part:
+        part.write_bytes(save(state, metadata))
 
 
 def load_weights(path: str | Path = SHIPPED) -> SkinAutoencoder:
@@ -38,14 +39,21 @@ def load_weights(path: str | Path = SHIPPED) -> SkinAutoencoder:
     Raises `InputError` for a file that is missing, truncated, not ours or of another format.
     """
     metadata, state = read_weights(path)
-    try:
+    with as_described(path):
         fields = json.loads(metadata["skinnet.config"])
         config = AutoencoderConfig(**{**fields, "widths": tuple(fields["widths"])})
         model = SkinAutoencoder(config)
         model.load_state_dict(state)
+    return model.eval()
+
+
+@contextmanager
+def as_described(path: str | Path) -> Iterator[None]:
+    """Turns what goes wrong in rebuilding the model of a file into `InputError`."""
+    try:
+        yield
     except (KeyError, TypeError, ValueError, RuntimeError) as error:
         raise InputError(f"{path} does not hold the model that it describes.") from error
-    return model.eval()
 
 
 def read_weights(path: str | Path) -> tuple[dict[str, str], dict[str, Tensor]]:

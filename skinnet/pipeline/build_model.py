@@ -26,7 +26,7 @@ from skinnet.errors import InputError
 from skinnet.files import write_text
 from skinnet.images import read_photo, write_png
 from skinnet.panel import TILE
-from skinnet.pipeline.command import add_output, made
+from skinnet.pipeline.command import add_output, output_folder
 from skinnet.pipeline.progress import digest, say
 from skinnet.pipeline.relight import RelightSettings
 from skinnet.pipeline.scans import OUTPUT, ScanOptions
@@ -86,7 +86,7 @@ def add_arguments(parser: ArgumentParser) -> None:
 
 def run(config: Namespace) -> int:
     """Write hybrid.npz, linear.npz and, if asked for, joint.npz; measures and pictures of them."""
-    output = made(config.output or FOLDER)
+    output = output_folder(config.output or FOLDER)
     files = found_maps(config.maps or [Path(OUTPUT)])
     stack = stacked(files, output / "stack")
     try:

@@ -8,6 +8,7 @@ from typing import Any, NoReturn
 from jsonargparse import ArgumentParser, Namespace
 
 from skinnet.errors import InputError
+from skinnet.files import made
 
 
 class SentenceParser(ArgumentParser):
@@ -31,15 +32,9 @@ def run(verb: str, arguments: Sequence[str], help_: str) -> int:
     return code
 
 
-def made(folder: Path) -> Path:
+def output_folder(folder: Path) -> Path:
     """The folder that a verb writes into, made if needed."""
-    try:
-        folder.mkdir(parents=True, exist_ok=True)
-    except OSError as error:
-        raise InputError(
-            f"{folder} cannot be made ({error.strerror}); choose another folder with -o."
-        ) from error
-    return folder
+    return made(folder, "choose another folder with -o")
 
 
 def add_output(parser: ArgumentParser, default: str) -> None:

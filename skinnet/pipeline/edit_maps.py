@@ -12,7 +12,7 @@ from skinnet.appearance.subjects import SkinTexture
 from skinnet.images import read_photo, write_png
 from skinnet.panel import picture, round_top, sheet
 from skinnet.pipeline.build_model import MAPS
-from skinnet.pipeline.command import add_output, made
+from skinnet.pipeline.command import add_output, output_folder
 from skinnet.pipeline.mapfiles import covered, pigment_tiles, shown, textured
 from skinnet.pipeline.progress import say
 from skinnet.pipeline.relight import RelightSettings
@@ -54,7 +54,7 @@ def run(config: Namespace) -> int:
     )
     after = edited(before, melanin, hemoglobin, _mask(config.mask))
     name = config.maps.name.removesuffix(MAPS).removesuffix(".npz")
-    output = made(config.output or config.maps.parent)
+    output = output_folder(config.output or config.maps.parent)
     stem = output / f"{name}_edited"
     albedo = shown(after.albedo(colour), after)
     save_maps(stem.with_name(f"{stem.name}_maps.npz"), after, colour)

@@ -12,7 +12,7 @@ from skinnet.errors import InputError
 from skinnet.images import linear_to_srgb, to_uint8, write_png
 from skinnet.panel import picture, pigment_map, round_top, sheet
 from skinnet.pipeline.build_model import FOLDER
-from skinnet.pipeline.command import add_output, made
+from skinnet.pipeline.command import add_output, output_folder
 
 
 def add_arguments(parser: ArgumentParser) -> None:
@@ -35,7 +35,7 @@ def run(config: Namespace) -> int:
     if not 0 <= config.spread <= 10:
         raise InputError(f"spread is a number of deviations in [0, 10]; got {config.spread}.")
     model = HybridModel.load(config.model)
-    output = made(config.output or config.model.parent / "samples")
+    output = output_folder(config.output or config.model.parent / "samples")
     betas = config.spread * model.sample(config.count, config.seed)
     textures = [model.texture(beta, f"sample {i:02}") for i, beta in enumerate(betas)]
     tops = [

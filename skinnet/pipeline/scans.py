@@ -9,7 +9,7 @@ from jaxtyping import Float
 from jsonargparse import ArgumentParser, Namespace
 
 from skinnet.errors import InputError
-from skinnet.pipeline.command import add_output, made
+from skinnet.pipeline.command import add_output, output_folder
 from skinnet.pipeline.progress import say
 from skinnet.shape.landmarks import check_landmarks, read_landmarks
 from skinnet.shape.mesh import Mesh
@@ -114,7 +114,7 @@ def beside(path: Path) -> list[Path]:
 
 def place(scan: Path, output: Path | None) -> Path:
     """Where the files of a scan go, without their ends: FOLDER/NAME."""
-    return made(output or scan.parent / OUTPUT) / scan.stem
+    return output_folder(output or scan.parent / OUTPUT) / scan.stem
 
 
 def add_scan_arguments(parser: ArgumentParser) -> None:

@@ -13,7 +13,7 @@ import torch
 from safetensors.torch import save_file
 
 from export.__main__ import main
-from skinnet.autoencoder import AutoencoderConfig, SkinAutoencoder
+from skinnet.autoencoder import FORMAT, AutoencoderConfig, SkinAutoencoder
 from skinnet.weights import load_weights, read_weights, save_weights
 
 
@@ -122,6 +122,15 @@ def test_weights_that_are_not_those_described_are_refused(
         save_file(wrong[0], path, wrong[1])
         assert main([str(path)]) == 2
         assert f"{path} does not hold the model" in capsys.readouterr().err
+
+
+def test_a_checkpoint_without_its_model_is_refused(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    path = tmp_path / "model.ckpt"
+    torch.save({"skinnet": {"format": FORMAT}, "state_dict": {}}, path)
+    assert main([str(path), "-o", str(tmp_path / "out.onnx")]) == 2
+    assert f"{path} does not hold the model" in capsys.readouterr().err
 
 
 def test_the_weights_that_are_exported_are_not_overwritten(

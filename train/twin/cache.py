@@ -2,7 +2,6 @@
 
 import hashlib
 import json
-import os
 import sys
 from collections.abc import Iterator
 from dataclasses import asdict, dataclass
@@ -13,7 +12,7 @@ from zipfile import BadZipFile
 
 import numpy as np
 
-from skinnet.errors import InputError
+from skinnet.files import atomic, made
 from train.twin.heads import ict_head, procedural_head
 from train.twin.ict import IctHead, load_ict_head
 from train.twin.views import Buffers, cast
@@ -54,13 +53,7 @@ def geometry(
     was. With the file `ict` of ICT-FaceKit most heads are of it, otherwise all are procedural.
     """
     settings = Settings(size, seed, "procedural" if ict is None else _fingerprint(ict), VERSION)
-    place = folder / settings.key
-    try:
-        place.mkdir(parents=True, exist_ok=True)
-    except OSError as error:
-        raise InputError(
-            f"{place} cannot be made ({error.strerror}); give another folder for the geometry."
-        ) from error
+    place = made(folder / settings.key, "give another folder for the geometry")
     stack = _empty(count, size)
     missing = [i for i in range(count) if not _fill(stack, i, _file(place, split, i), settings)]
     jobs = [(place, settings, split, index, ict) for index in missing]
@@ -112,9 +105,8 @@ def _file(place: Path, split: str, index: int) -> Path:
 
 
 def _write(path: Path, cast_: Buffers, settings: Settings) -> None:
-    unfinished = path.with_name(f".{path.stem}.{os.getpid()}.npz")
-    np.savez(unfinished, settings=json.dumps(asdict(settings)), **cast_._asdict())
-    unfinished.replace(path)
+    with atomic(path) as part:
+        np.savez(part, settings=json.dumps(asdict(settings)), **cast_._asdict())
 
 
 def _fill(stack: Buffers, index: int, path: Path, settings: Settings) -> bool:
