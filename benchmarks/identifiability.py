@@ -1,13 +1,15 @@
-"""What the colour of one pixel can tell of its pigments, under what the twin leaves unknown.
+"""What the colours of a face can tell of its pigments, under what the twin leaves unknown.
 
     python -m benchmarks.identifiability [--json]
 
-No picture is drawn: a patch of skin with the twin's own base pigments is seen by its lights,
-cameras, white balance and tone curves, in shading of unknown strength under a little gloss, in
-eight bits. A network of two layers is trained on 60,000 such colours to give the pigments, and
-scored on 10,000 others: about the best that a reader without context can do. `told` is the same
-reader that is also given the error of the white balance, as the rest of a picture might. What is
-unknown is taken away step by step; RMSE is relative to that of the mean.
+No picture is drawn: patches of skin with the twin's own pigments are seen by its lights, cameras,
+white balance and tone curves, in shading of unknown strength under its gloss, in eight bits. A
+network of two layers is trained on 60,000 such lots to give the mean pigments, and scored on
+10,000 others by the test's cameras: about the best that a reader of colours alone can do. `patch`
+sees the base of a skin, `face` its forehead, cheeks, nose, lids, lips and chin, each in shading of
+its own. The `told` are also given the error of the white balance, exactly, as the rest of a
+picture can only estimate it. What is unknown is taken away step by step; RMSE is relative to that
+of the mean.
 """
 
 from collections.abc import Callable
@@ -18,14 +20,14 @@ from torch import Tensor, nn
 from torch.utils.data import default_collate
 
 from benchmarks.report import Results, main
-from skinnet.camera import spectrum_to_srgb
+from skinnet.camera import SpectralCamera, spectrum_to_srgb
 from skinnet.decoder import SkinDecoder
 from train.twin.camera import pictured, toned
-from train.twin.lot import HEMOGLOBIN, MELANIN, draw_camera, draw_light
+from train.twin.lot import HEMOGLOBIN, MELANIN, draw_camera, draw_light, draw_regions
 
 DRAWN, SCORED, STEPS, BATCH = 70_000, 10_000, 1500, 4096
-GLOSS = 0.02
-"""Linear light of gloss over the skin."""
+GLOSS = 0.032, 0.38
+"""Median gloss of the twin's faces relative to their light, and the spread of its logarithm."""
 
 Lot = dict[str, Tensor]
 Change = Callable[[Lot], Lot]
@@ -42,23 +44,38 @@ def measure() -> Results:
         "and_daylight_d65": (lambda lot: _daylight(_even(lot)), True),
         "and_mean_camera": (lambda lot: _daylight(_even(lot)), False),
     }
+    return {
+        name: read(change(lot), decoder, measured) for name, (change, measured) in cases.items()
+    }
+
+
+def read(lot: Lot, decoder: SkinDecoder, measured: bool) -> Results:
+    """What readers of a patch and of a face make of a lot, told its white balance and not."""
     found: Results = {}
-    for name, (change, measured) in cases.items():
-        seen = colours(change(lot), decoder, measured)
+    for name, some in {"patch": slice(0, 1), "face": slice(1, None)}.items():
+        part = lot | {key: lot[key][:, some] for key in ("f_mel", "f_blood", "shading")}
+        truth = torch.stack([part["f_mel"].mean(1), part["f_blood"].mean(1)], 1)
+        seen = colours(part, decoder, measured)
         told = torch.cat([seen, lot["white_balance"]], 1)
-        found[name] = {"colour": score(lot, seen), "told": score(lot, told)}
+        found |= {name: score(truth, seen), f"{name}_told": score(truth, told)}
     return found
 
 
 def draw(count: int) -> Lot:
-    """Lots of a patch: pigments, shading, light and camera."""
+    """Lots of a face: pigments and shading [count, 7] of its base and regions, light and camera."""
     rng = np.random.default_rng(0)
-    lots = [draw_light(rng) | draw_camera(rng, 1) for _ in range(count)]
+    lots = [draw_light(rng) | draw_camera(rng, 1) | draw_regions(rng) for _ in range(count)]
     names = ("light", "temperature", "pick", "white_balance", "tone")
     lot = default_collate([{name: np.float32(one[name]) for name in names} for one in lots])
-    for name, limits in (("f_mel", MELANIN), ("f_blood", HEMOGLOBIN)):
-        lot[name] = torch.from_numpy(np.exp(rng.uniform(*np.log(limits), count))).float()
-    lot["shading"] = torch.from_numpy(np.exp(rng.normal(-0.4, 0.5, count))).float()
+    for name, limits, regions in (
+        ("f_mel", MELANIN, "melanin_regions"),
+        ("f_blood", HEMOGLOBIN, "blood_regions"),
+    ):
+        base = rng.uniform(*np.log(limits), (count, 1))
+        factors = np.stack([one[regions] for one in lots])
+        lot[name] = torch.from_numpy(np.exp(np.hstack([base, base + factors]))).float()
+    lot["shading"] = torch.from_numpy(np.exp(rng.normal(-0.4, 0.5, (count, 7)))).float()
+    lot["gloss"] = torch.from_numpy(np.exp(rng.normal(np.log(GLOSS[0]), GLOSS[1], count))).float()
     return lot
 
 
@@ -73,26 +90,36 @@ def _daylight(lot: Lot) -> Lot:
 
 
 def colours(lot: Lot, decoder: SkinDecoder, measured: bool) -> Tensor:
-    """Log linear sRGB [count, 3] of the patches in eight bits, by measured cameras or the mean."""
-    if measured:
-        matrix, _ = pictured(lot, decoder.camera, "train")
-    else:
-        camera = decoder.camera
-        red, blue = lot["white_balance"].unbind(-1)
-        gain = torch.stack([red, torch.zeros_like(red), blue], -1).exp()
-        light = camera.light(lot["light"], lot["temperature"])
-        matrix = spectrum_to_srgb(
-            light, camera.mean.expand(len(light), -1, -1), camera.observer, gain
-        )
-    skin = decoder.skin(lot["f_mel"][:, None, None], lot["f_blood"][:, None, None], matrix)
-    linear = ((skin[:, :, 0, 0] + GLOSS) * lot["shading"][:, None]).clamp_min(0)
-    display = (toned(lot, linear[..., None, None])[..., 0, 0] * 255).round() / 255
-    return torch.log(display.clamp_min(0.5 / 255))
+    """Log sRGB [count, 3 patches] in eight bits, by measured cameras or the mean."""
+    matrix = measured_matrix(lot, decoder.camera) if measured else mean_matrix(lot, decoder.camera)
+    skin = decoder.skin(lot["f_mel"][:, None], lot["f_blood"][:, None], matrix)[:, :, 0]
+    linear = (skin + lot["gloss"][:, None, None]) * lot["shading"][:, None]
+    display = (toned(lot, linear[:, :, None].clamp_min(0)) * 255).round() / 255
+    return torch.log(display.clamp_min(0.5 / 255)).flatten(1)
 
 
-def score(lot: Lot, seen: Tensor) -> dict[str, float]:
-    """How well a network gives both pigments from what is seen."""
-    truth = torch.stack([lot["f_mel"], lot["f_blood"]], 1)
+def measured_matrix(lot: Lot, camera: SpectralCamera) -> Tensor:
+    """From spectra to linear sRGB [count, 33, 3], the scored ones by the test's cameras."""
+    parts = {"train": slice(None, -SCORED), "test": slice(-SCORED, None)}
+    return torch.cat(
+        [
+            pictured({name: value[part] for name, value in lot.items()}, camera, split)[0]
+            for split, part in parts.items()
+        ]
+    )
+
+
+def mean_matrix(lot: Lot, camera: SpectralCamera) -> Tensor:
+    """From spectra to linear sRGB [count, 33, 3] by the mean of all cameras."""
+    red, blue = lot["white_balance"].unbind(-1)
+    gain = torch.stack([red, torch.zeros_like(red), blue], -1).exp()
+    light = camera.light(lot["light"], lot["temperature"])
+    mean = camera.mean.expand(len(light), -1, -1)
+    return spectrum_to_srgb(light, mean, camera.observer, gain)
+
+
+def score(truth: Tensor, seen: Tensor) -> dict[str, float]:
+    """How well a network gives both pigments [count, 2] from what is seen."""
     guess = fitted(_standard(seen), _standard(truth.log())) * truth.log().std(0)
     guess = (guess + truth.log().mean(0)).exp()[-SCORED:]
     truth = truth[-SCORED:]

@@ -19,7 +19,8 @@ from benchmarks.disturbances import DISTURBANCES, UNDONE
 from benchmarks.moments import Moments
 from benchmarks.reader import Reader, composed, resized
 from benchmarks.report import Results
-from benchmarks.typology import typology_angle
+from benchmarks.scene import under_daylight
+from benchmarks.typology import GROUPS, group, typology_angle
 from skinnet.autoencoder import SkinMaps
 from skinnet.decoder import SkinDecoder
 from skinnet.faces import crop_box, find_face, resize, skin_mask
@@ -99,7 +100,7 @@ def measure_portraits(
     errors: dict[str, list[Moments]] = {}
     bare: list[Moments] = []
     changes: dict[str, list[list[float]]] = {name: [] for name in DISTURBANCES}
-    measured: list[tuple[Portrait, float]] = []
+    measured: list[tuple[Portrait, list[float]]] = []
     for kind in ("congress", "london"):
         errors[kind] = []
         found = portraits(sorted((folder / kind).glob("*.jpg"))[::every])
@@ -112,13 +113,14 @@ def measure_portraits(
                 for name, change in relative_changes(one.crop, maps, reader).items():
                     changes[name].append(change)
             if kind == "london":
-                measured.append((one, means(maps, maps.mask > 0.5)[0]))
+                measured.append((one, means(maps, maps.mask > 0.5)))
     kept = held_out(len(errors["congress"])) if every == 1 and errors["congress"] else set()
     sets = {**errors, "congress_held_out": [errors["congress"][place] for place in kept]}
     return {
         "reconstruction": pooled(errors["congress"] + errors["london"]).rmse,
         "stability": {name: medians(some) for name, some in changes.items()},
-        "ita_rank": ita_rank(measured),
+        "ita_rank": ita_rank([(one, melanin) for one, (melanin, _) in measured]),
+        "typology": by_tone(measured, decoder),
         "explained": pooled(bare).rmse,
         "reconstruction_by_set": {name: pooled(some).rmse for name, some in sets.items()},
         "count": {
@@ -177,16 +179,44 @@ def medians(changes: list[list[float]]) -> dict[str, float | None]:
 
 
 def ita_rank(measured: list[tuple[Portrait, float]]) -> float | None:
-    """Spearman's correlation of mean melanin with the typology angle measured by the wall.
-
-    Each portrait's light is divided by its wall's; the wall keeps its median luminance.
-    """
+    """Spearman's correlation of mean melanin with the typology angle measured by the wall."""
     usable = [(one, melanin) for one, melanin in measured if np.isfinite(melanin)]
     if len(usable) < 3 or len({melanin for _, melanin in usable}) == 1:
         return None
-    walls, colours = (
-        np.stack([getattr(one, name) for one, _ in usable]) for name in ("wall", "colour")
-    )
-    grey = np.median(walls @ [0.2126, 0.7152, 0.0722])
-    angles = typology_angle(torch.from_numpy(colours / walls * grey))
+    angles = wall_angles([one for one, _ in usable])
     return float(spearmanr([melanin for _, melanin in usable], angles.numpy()).statistic)
+
+
+def by_tone(measured: list[tuple[Portrait, list[float]]], decoder: SkinDecoder) -> Results:
+    """Of each skin tone how many portraits, and means of melanin, of the angle measured by the wall
+    and of that of skin with the mean pigments, without gloss, under D65.
+
+    Dark skin read as pale skin in little light shows here, where a rank may not.
+    """
+    usable = [(one, pigments) for one, pigments in measured if np.isfinite(pigments).all()]
+    if not usable:
+        return {}
+    angles = wall_angles([one for one, _ in usable])
+    pigments = torch.tensor([pigments for _, pigments in usable], dtype=torch.float32)
+    read = typology_angle(under_daylight(*pigments.unbind(1), decoder))
+    tones = [group(angle) for angle in angles.tolist()]
+    found: Results = {}
+    for name in [name for name in GROUPS if name in tones]:
+        mine = torch.tensor([tone == name for tone in tones])
+        found[name] = {
+            "portraits": int(mine.sum()),
+            "melanin": float(pigments[mine, 0].mean()),
+            "angle_by_wall": float(angles[mine].mean()),
+            "angle_of_skin": float(read[mine].mean()),
+        }
+    return found
+
+
+def wall_angles(some: Sequence[Portrait]) -> torch.Tensor:
+    """Typology angles [portraits] in degrees, measured by the wall.
+
+    Each portrait's light is divided by its wall's; the wall keeps its median luminance.
+    """
+    walls, colours = (np.stack([getattr(one, name) for one in some]) for name in ("wall", "colour"))
+    grey = np.median(walls @ [0.2126, 0.7152, 0.0722])
+    return typology_angle(torch.from_numpy(colours / walls * grey))

@@ -33,8 +33,13 @@ _FAINT = 1e-4
 
 
 def appearance(reconstruction: Image, photograph: Image, weight: Map) -> Scalar:
-    """Mean absolute difference in linear sRGB, each pixel weighted."""
-    return _mean((reconstruction - photograph).abs().mean(1), weight)
+    """Mean absolute difference in linear sRGB, each pixel weighted.
+
+    A photograph ends at 1, and where it does, whatever is brighter explains it.
+    """
+    burnt = (photograph >= 1) & (reconstruction > photograph)
+    difference = (reconstruction - photograph).abs().masked_fill(burnt, 0)
+    return _mean(difference.mean(1), weight)
 
 
 def camera_prior(capture: Capture) -> Scalar:

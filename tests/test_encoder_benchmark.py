@@ -185,6 +185,7 @@ def test_skins_are_measured_by_their_wall() -> None:
     melanin = torch.logspace(-1.7, -0.6, 6)
     skin = under_daylight(melanin, torch.full_like(melanin, 0.04), SkinDecoder()).numpy()
     light = np.random.default_rng(0).uniform(0.5, 1.5, (6, 3))
+    light /= np.median(light @ [0.2126, 0.7152, 0.0722])
     blank = np.zeros((1, 1, 3), np.uint8), np.ones((1, 1), bool)
     measured = [
         (
@@ -196,3 +197,8 @@ def test_skins_are_measured_by_their_wall() -> None:
         for rgb, one, m in zip(skin, light, melanin.tolist(), strict=True)
     ]
     assert portraits.ita_rank(measured) == pytest.approx(-1)
+    found = portraits.by_tone([(one, [m, 0.04]) for one, m in measured], SkinDecoder())
+    assert list(found) == [name for name in GROUPS if name in found] and len(found) > 2
+    assert sum(tone["portraits"] for tone in found.values()) == 6
+    for tone in found.values():
+        assert tone["angle_by_wall"] == pytest.approx(tone["angle_of_skin"], abs=0.01)

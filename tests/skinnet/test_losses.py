@@ -49,6 +49,17 @@ def test_appearance_counts_where_the_weight_is() -> None:
     assert losses.appearance(photograph + 0.25, photograph, weight) == pytest.approx(0.25)
 
 
+def test_where_a_photograph_ends_brighter_is_right_and_darker_is_not() -> None:
+    photograph, ones = torch.ones(2, 3, 8, 8), torch.ones(2, 8, 8)
+    made = torch.full_like(photograph, 1.5).requires_grad_()
+    assert losses.appearance(made, photograph, ones) == 0
+    assert losses.appearance(made - 0.75, photograph, ones).item() == pytest.approx(0.25)
+    # Only where it ends: elsewhere too bright is wrong, and is drawn back however bright.
+    loss = losses.appearance(made, 0.9 * photograph, ones)
+    loss.backward()
+    assert loss.item() == pytest.approx(0.6) and made.grad is not None and (made.grad > 0).all()
+
+
 def test_pigments_are_compared_in_cube_roots() -> None:
     truth, guess = maps(), maps(melanin=torch.full((2, 8, 8), 8 * 0.05))
     root = (0.05 / 0.43) ** (1 / 3)

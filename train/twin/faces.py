@@ -15,7 +15,7 @@ from skinnet.decoder import SkinDecoder
 from train.batch import Batch
 from train.stream import StreamLoader, seen_samples
 from train.twin.cache import SPLITS, geometry
-from train.twin.lot import draw_lot
+from train.twin.lot import MELANIN, TRAINED_MELANIN, draw_lot
 from train.twin.picture import render
 from train.twin.skinfile import Skins, draw_skin, load_skins
 from train.twin.views import Buffers
@@ -34,9 +34,15 @@ class Lots(Dataset[Drawn]):
     """
 
     def __init__(
-        self, heads: Drawn, split: str, samples: int, seed: int, skins: Skins | None = None
+        self,
+        heads: Drawn,
+        split: str,
+        samples: int,
+        seed: int,
+        skins: Skins | None = None,
+        melanin: tuple[float, float] = MELANIN,
     ):
-        self.heads, self.samples, self.skins = heads, samples, skins
+        self.heads, self.samples, self.skins, self.melanin = heads, samples, skins, melanin
         self.key = (seed, SPLITS[split], 7)
 
     def __len__(self) -> int:
@@ -45,7 +51,7 @@ class Lots(Dataset[Drawn]):
     def __getitem__(self, index: int) -> Drawn:
         count, size = self.heads["label"].shape[:2]
         buffers = {name: value[index % count] for name, value in self.heads.items()}
-        lot = draw_lot(np.random.default_rng([*self.key, index]), size)
+        lot = draw_lot(np.random.default_rng([*self.key, index]), size, self.melanin)
         if self.skins is not None:
             # Draws of its own, so that lots are the same with skins and without.
             lot |= draw_skin(np.random.default_rng([*self.key, index, 1]), self.skins)
@@ -56,8 +62,9 @@ class TwinFaces(LightningDataModule):
     """Heads with all ground truth under varied skin, light, camera and exposure.
 
     Their geometry is ray-cast once and kept on disk; everything else is drawn afresh on every step
-    and rendered on the device that trains. Training never repeats a picture; validation and test
-    have heads of their own, the test cameras of its own too, and both are the same on every run.
+    and rendered on the device that trains. Training never repeats a picture, and its skin goes to
+    darker than theirs; validation and test have heads of their own, the test cameras of its own
+    too, and both are the same on every run.
 
     Args:
         size: side of the square pictures in pixels.
@@ -136,7 +143,8 @@ class TwinFaces(LightningDataModule):
     def stream(self, steps: int, trainer: Trainer | None) -> StreamLoader:
         """Training pictures in epochs of that many steps, from where the trainer stands."""
         samples = max(steps, 1) * self.batch_size
-        lots = Lots(self.buffers["train"], "train", samples, self.seed, self.skins)
+        heads = self.buffers["train"]
+        lots = Lots(heads, "train", samples, self.seed, self.skins, TRAINED_MELANIN)
         seen = partial(seen_samples, trainer, self.batch_size)
         return StreamLoader(lots, self.batch_size, samples, seen, self.workers)
 

@@ -18,7 +18,7 @@ from train.batch import Batch
 from train.twin import camera
 from train.twin.faces import Lots, TwinFaces
 from train.twin.light import shade
-from train.twin.lot import MELANIN, draw_lot
+from train.twin.lot import MELANIN, TRAINED_MELANIN, draw_lot
 from train.twin.paint import paint_skin
 
 COUNT = 6
@@ -138,6 +138,16 @@ def test_the_same_index_is_the_same_picture_in_its_split_alone(data: TwinFaces) 
     other = Lots(data.buffers["train"], "val", 4, seed=0)[2]
     assert all(np.array_equal(first[name], again[name]) for name in first)
     assert first["f_mel"] != other["f_mel"]
+
+
+def test_training_alone_sees_the_darkest_skin(casts: Path) -> None:
+    data = TwinFaces(64, 4, heads=4, val_heads=4, val_samples=40, geometry=str(casts))
+    data.setup("fit")
+    lots = data.stream(20, None).dataset
+    trained = np.array([lots[index]["f_mel"] for index in range(80)])
+    kept = torch.cat([lot["f_mel"] for lot in data.val_dataloader()])
+    assert trained.min() < 0.02 and MELANIN[1] < trained.max() <= TRAINED_MELANIN[1]
+    assert kept.max() <= MELANIN[1]
 
 
 def test_splits_have_heads_of_their_own(data: TwinFaces) -> None:
