@@ -46,7 +46,7 @@ class LossWeights:
     leak: NonNegativeFloat = 3.0
     lighting: NonNegativeFloat = 1.0
     white_balance: NonNegativeFloat = 2.0
-    steadiness: NonNegativeFloat = 4.0
+    steadiness: NonNegativeFloat = 3.0
     mask_guess: NonNegativeFloat = 0.05
 
 

@@ -15,7 +15,7 @@ from skinnet.decoder import SkinDecoder
 from train.batch import Batch
 from train.stream import StreamLoader, seen_samples
 from train.twin.cache import SPLITS, geometry
-from train.twin.lot import MELANIN, TRAINED_MELANIN, draw_lot
+from train.twin.lot import draw_lot
 from train.twin.picture import render
 from train.twin.skinfile import Skins, draw_skin, load_skins
 from train.twin.views import Buffers
@@ -30,7 +30,8 @@ class Lots(Dataset[Drawn]):
     """Heads with a lot each, drawn from (seed, split, index): the same on every machine.
 
     Heads take turns, so that a set as large as their number, or a multiple, has each as often. With
-    `skins`, half of the pictures wear one; all else in them is what it is without.
+    `skins`, half of the pictures wear one; all else in them is what it is without. `wide` lots are
+    of training alone.
     """
 
     def __init__(
@@ -40,9 +41,9 @@ class Lots(Dataset[Drawn]):
         samples: int,
         seed: int,
         skins: Skins | None = None,
-        melanin: tuple[float, float] = MELANIN,
+        wide: bool = False,
     ):
-        self.heads, self.samples, self.skins, self.melanin = heads, samples, skins, melanin
+        self.heads, self.samples, self.skins, self.wide = heads, samples, skins, wide
         self.key = (seed, SPLITS[split], 7)
 
     def __len__(self) -> int:
@@ -51,7 +52,7 @@ class Lots(Dataset[Drawn]):
     def __getitem__(self, index: int) -> Drawn:
         count, size = self.heads["label"].shape[:2]
         buffers = {name: value[index % count] for name, value in self.heads.items()}
-        lot = draw_lot(np.random.default_rng([*self.key, index]), size, self.melanin)
+        lot = draw_lot(np.random.default_rng([*self.key, index]), size, self.wide)
         if self.skins is not None:
             # Draws of its own, so that lots are the same with skins and without.
             lot |= draw_skin(np.random.default_rng([*self.key, index, 1]), self.skins)
@@ -62,9 +63,9 @@ class TwinFaces(LightningDataModule):
     """Heads with all ground truth under varied skin, light, camera and exposure.
 
     Their geometry is ray-cast once and kept on disk; everything else is drawn afresh on every step
-    and rendered on the device that trains. Training never repeats a picture, and its skin goes to
-    darker than theirs; validation and test have heads of their own, the test cameras of its own
-    too, and both are the same on every run.
+    and rendered on the device that trains. Training never repeats a picture, and its skin may be
+    darker and shine more than theirs; validation and test have heads of their own, the test cameras
+    of its own too, and both are the same on every run.
 
     Args:
         size: side of the square pictures in pixels.
@@ -143,8 +144,7 @@ class TwinFaces(LightningDataModule):
     def stream(self, steps: int, trainer: Trainer | None) -> StreamLoader:
         """Training pictures in epochs of that many steps, from where the trainer stands."""
         samples = max(steps, 1) * self.batch_size
-        heads = self.buffers["train"]
-        lots = Lots(heads, "train", samples, self.seed, self.skins, TRAINED_MELANIN)
+        lots = Lots(self.buffers["train"], "train", samples, self.seed, self.skins, wide=True)
         seen = partial(seen_samples, trainer, self.batch_size)
         return StreamLoader(lots, self.batch_size, samples, seen, self.workers)
 

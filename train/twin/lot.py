@@ -11,9 +11,11 @@ MELANIN = (0.015, 0.25)
 """Base melanin, even in its logarithm: typology angles of 73 to -38 degrees, and with
 the gloss that an instrument sees a lightness of 80 to 30."""
 
-TRAINED_MELANIN = (0.015, 0.33)
-"""The same of what is trained on: very dark skin in photographs lies beyond what is tested, and a
-network that has never seen it reads pale skin in little light."""
+WIDE_MELANIN, SHINE = (0.015, 0.33), 0.35
+"""Of training alone: base melanin, and the mean logarithm of how much more skin shines.
+
+Very dark skin in photographs is darker and greyer than skin of the test; a network that has not
+seen any reads pale skin in little light."""
 
 HEMOGLOBIN = (0.018, 0.090)
 """Base blood, even in its logarithm: somewhat beyond the middle 90 % of measured forearms."""
@@ -32,14 +34,14 @@ IRIS = ((0.03, 0.02, 0.01), (0.08, 0.05, 0.02), (0.06, 0.10, 0.12), (0.07, 0.10,
 FRAMES = ((0.02, 0.02, 0.02), (0.10, 0.05, 0.03), (0.45, 0.40, 0.30), (0.35, 0.35, 0.36))
 
 
-def draw_lot(
-    rng: np.random.Generator, size: int, melanin_limits: tuple[float, float] = MELANIN
-) -> Lot:
-    """One picture of `size` pixels square; every value is float32."""
-    melanin = np.exp(rng.uniform(*np.log(melanin_limits)))
+def draw_lot(rng: np.random.Generator, size: int, wide: bool = False) -> Lot:
+    """One picture of `size` pixels square; every value is float32. `wide` is for training."""
+    melanin = np.exp(rng.uniform(*np.log(WIDE_MELANIN if wide else MELANIN)))
     parts = [_skin(rng, melanin), _marks(rng), _features(rng, melanin), _surroundings(rng)]
     parts += [draw_light(rng), draw_camera(rng, size), NO_SKIN]
     lot = {name: value for part in parts for name, value in part.items()}
+    if wide:
+        lot["oil"] = np.asarray(lot["oil"]) * np.exp(rng.exponential(SHINE))
     return {name: np.asarray(value, np.float32) for name, value in lot.items()}
 
 

@@ -18,7 +18,7 @@ from train.batch import Batch
 from train.twin import camera
 from train.twin.faces import Lots, TwinFaces
 from train.twin.light import shade
-from train.twin.lot import MELANIN, TRAINED_MELANIN, draw_lot
+from train.twin.lot import MELANIN, WIDE_MELANIN, draw_lot
 from train.twin.paint import paint_skin
 
 COUNT = 6
@@ -140,14 +140,16 @@ def test_the_same_index_is_the_same_picture_in_its_split_alone(data: TwinFaces) 
     assert first["f_mel"] != other["f_mel"]
 
 
-def test_training_alone_sees_the_darkest_skin(casts: Path) -> None:
-    data = TwinFaces(64, 4, heads=4, val_heads=4, val_samples=40, geometry=str(casts))
+def test_training_alone_sees_the_darkest_and_shiniest_skin(casts: Path) -> None:
+    data = TwinFaces(64, 4, heads=4, val_heads=4, val_samples=80, geometry=str(casts))
     data.setup("fit")
-    lots = data.stream(20, None).dataset
-    trained = np.array([lots[index]["f_mel"] for index in range(80)])
-    kept = torch.cat([lot["f_mel"] for lot in data.val_dataloader()])
-    assert trained.min() < 0.02 and MELANIN[1] < trained.max() <= TRAINED_MELANIN[1]
-    assert kept.max() <= MELANIN[1]
+    lots, fixed = data.stream(20, None).dataset, data.val_dataloader().dataset
+    trained, kept = ([some[index] for index in range(80)] for some in (lots, fixed))
+    melanin = np.array([one["f_mel"] for one in trained])
+    assert melanin.min() < 0.02 and MELANIN[1] < melanin.max() <= WIDE_MELANIN[1]
+    assert max(one["f_mel"] for one in kept) <= MELANIN[1]
+    shine, usual = (np.mean([one["oil"] for one in some]) for some in (trained, kept))
+    assert shine > 1.2 * usual
 
 
 def test_splits_have_heads_of_their_own(data: TwinFaces) -> None:

@@ -1,0 +1,41 @@
+"""The mean of two checkpoints is a model between them."""
+
+from pathlib import Path
+
+import pytest
+import torch
+
+from skinnet.autoencoder import AutoencoderConfig, SkinAutoencoder
+from skinnet.checkpoint import describe, load_checkpoint
+from tools.mean import main
+
+
+def checkpoint(path: Path, seed: int, width: int = 8) -> SkinAutoencoder:
+    torch.manual_seed(seed)
+    config = AutoencoderConfig(widths=(4, width))
+    model = SkinAutoencoder(config)
+    state = {f"model.{name}": value for name, value in model.state_dict().items()}
+    torch.save({"skinnet": describe(config, f"seed {seed}"), "state_dict": state}, path)
+    return model
+
+
+def test_weights_are_half_of_each(tmp_path: Path) -> None:
+    names = [tmp_path / f"{name}.ckpt" for name in ("first", "last", "mean")]
+    models = [checkpoint(path, seed) for seed, path in enumerate(names[:2])]
+    assert main([str(names[0]), str(names[1]), "-o", str(names[2])]) == 0
+    found, trained_on = load_checkpoint(names[2])
+    first, last = (model.encoder.globals.weight for model in models)
+    torch.testing.assert_close(found.encoder.globals.weight, (first + last) / 2)
+    assert trained_on.startswith("seed 1; mean") and found(torch.rand(1, 3, 16, 16)) is not None
+
+
+def test_other_shapes_and_missing_files_end_in_a_sentence(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    first, last, out = (tmp_path / name for name in ("a.ckpt", "b.ckpt", "out.ckpt"))
+    checkpoint(first, 0)
+    checkpoint(last, 1, width=6)
+    for other in (last, tmp_path / "none.ckpt"):
+        assert main([str(first), str(other), "-o", str(out)]) == 2
+        said = capsys.readouterr().err
+        assert str(other) in said and "Traceback" not in said and not out.exists()
