@@ -35,7 +35,7 @@ def test_other_shapes_and_missing_files_end_in_a_sentence(
     first, last, out = (tmp_path / name for name in ("a.ckpt", "b.ckpt", "out.ckpt"))
     checkpoint(first, 0)
     checkpoint(last, 1, width=6)
-    for other in (last, tmp_path / "none.ckpt"):
+    for other in (first, last, tmp_path / "none.ckpt"):
         assert main([str(first), str(other), "-o", str(out)]) == 2
         said = capsys.readouterr().err
         assert str(other) in said and "Traceback" not in said and not out.exists()

@@ -26,6 +26,8 @@ def mean(earlier: Path, later: Path) -> dict[str, object]:
         name: one.shape for name, one in state.items()
     }:
         raise InputError(f"{earlier} and {later} hold models of different shape; give two of one.")
+    if all(torch.equal(one, state[name]) for name, one in before.items()):
+        raise InputError(f"{earlier} and {later} hold the same weights; give two different ones.")
     note = last["skinnet"] | {
         "trained_on": f"{last['skinnet']['trained_on']}; mean with the weights of an earlier end"
     }
