@@ -20,7 +20,8 @@ from torch import Tensor, nn
 from torch.utils.data import default_collate
 
 from benchmarks.report import Results, main
-from skinnet.camera import SpectralCamera, spectrum_to_srgb
+from skinnet.camera import SpectralCamera
+from skinnet.capture import Capture
 from skinnet.decoder import SkinDecoder
 from train.twin.camera import pictured, toned
 from train.twin.lot import HEMOGLOBIN, MELANIN, draw_camera, draw_light, draw_regions
@@ -111,11 +112,8 @@ def measured_matrix(lot: Lot, camera: SpectralCamera) -> Tensor:
 
 def mean_matrix(lot: Lot, camera: SpectralCamera) -> Tensor:
     """From spectra to linear sRGB [count, 33, 3] by the mean of all cameras."""
-    red, blue = lot["white_balance"].unbind(-1)
-    gain = torch.stack([red, torch.zeros_like(red), blue], -1).exp()
-    light = camera.light(lot["light"], lot["temperature"])
-    mean = camera.mean.expand(len(light), -1, -1)
-    return spectrum_to_srgb(light, mean, camera.observer, gain)
+    mean = torch.zeros(len(lot["light"]), len(camera.basis))
+    return camera.matrix(Capture(lot["light"], lot["temperature"], mean, lot["white_balance"]))
 
 
 def score(truth: Tensor, seen: Tensor) -> dict[str, float]:

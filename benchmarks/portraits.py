@@ -201,7 +201,7 @@ def by_tone(measured: list[tuple[Portrait, list[float]]], decoder: SkinDecoder) 
     read = typology_angle(under_daylight(*pigments.unbind(1), decoder))
     tones = [group(angle) for angle in angles.tolist()]
     found: Results = {}
-    for name in [name for name in GROUPS if name in tones]:
+    for name in sorted(set(tones), key=list(GROUPS).index):
         mine = torch.tensor([tone == name for tone in tones])
         found[name] = {
             "portraits": int(mine.sum()),

@@ -26,6 +26,12 @@ def describe(config: AutoencoderConfig, trained_on: str) -> dict[str, Any]:
     }
 
 
+def checkpoint_of(model: SkinAutoencoder, trained_on: str) -> dict[str, Any]:
+    """What of a checkpoint `load_checkpoint` needs; training does not go on with it."""
+    state = {f"{_PREFIX}{name}": value for name, value in model.state_dict().items()}
+    return {"skinnet": describe(model.config, trained_on), "state_dict": state}
+
+
 def read_checkpoint(path: str | Path) -> dict[str, Any]:
     """A checkpoint, loaded with `weights_only`.
 

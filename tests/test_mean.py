@@ -29,6 +29,16 @@ def test_weights_are_half_of_each(tmp_path: Path) -> None:
     assert trained_on.startswith("seed 1; mean") and found(torch.rand(1, 3, 16, 16)) is not None
 
 
+def test_a_file_goes_into_a_folder_that_is_there(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    first, last, out = tmp_path / "a.ckpt", tmp_path / "b.ckpt", tmp_path / "none" / "out.ckpt"
+    checkpoint(first, 0)
+    checkpoint(last, 1)
+    assert main([str(first), str(last), "-o", str(out)]) == 2
+    assert f"{out.parent} is not a folder; make it first." in capsys.readouterr().err
+
+
 def test_other_shapes_and_missing_files_end_in_a_sentence(
     tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:

@@ -9,30 +9,26 @@ et al. 2018). The result exports as any checkpoint does; training does not go on
 import argparse
 import sys
 from pathlib import Path
+from typing import Any
 
 import torch
 from torch import Tensor
 
-from skinnet.checkpoint import read_checkpoint
+from skinnet.checkpoint import checkpoint_of, load_checkpoint
 from skinnet.errors import InputError
 from skinnet.files import atomic
 
 
-def mean(earlier: Path, later: Path) -> dict[str, object]:
+def mean(earlier: Path, later: Path) -> dict[str, Any]:
     """A checkpoint of the mean weights and of what both were trained on."""
-    first, last = read_checkpoint(earlier), read_checkpoint(later)
-    before, state = first["state_dict"], last["state_dict"]
-    if {name: one.shape for name, one in before.items()} != {
-        name: one.shape for name, one in state.items()
-    }:
+    (first, _), (last, trained_on) = load_checkpoint(earlier), load_checkpoint(later)
+    if first.config != last.config:
         raise InputError(f"{earlier} and {later} hold models of different shape; give two of one.")
+    before, state = first.state_dict(), last.state_dict()
     if all(torch.equal(one, state[name]) for name, one in before.items()):
         raise InputError(f"{earlier} and {later} hold the same weights; give two different ones.")
-    note = last["skinnet"] | {
-        "trained_on": f"{last['skinnet']['trained_on']}; mean with the weights of an earlier end"
-    }
-    averaged = {name: _between(before[name], one) for name, one in state.items()}
-    return {"skinnet": note, "state_dict": averaged}
+    last.load_state_dict({name: _between(before[name], one) for name, one in state.items()})
+    return checkpoint_of(last, f"{trained_on}; mean with the weights of an earlier end")
 
 
 def _between(a: Tensor, b: Tensor) -> Tensor:
@@ -47,6 +43,8 @@ def main(arguments: list[str] | None = None) -> int:
     parser.add_argument("-o", "--output", type=Path, required=True)
     given = parser.parse_args(arguments)
     try:
+        if not given.output.parent.is_dir():
+            raise InputError(f"{given.output.parent} is not a folder; make it first.")
         checkpoint = mean(given.earlier, given.later)
         with atomic(given.output) as path:
             torch.save(checkpoint, path)
