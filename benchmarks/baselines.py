@@ -7,7 +7,7 @@ from torch import Tensor
 
 from benchmarks.moments import Moments
 from benchmarks.scene import Pixels, Scene, under_daylight
-from skinnet.decoder import SkinDecoder
+from skinnet.physics.decoder import SkinDecoder
 
 DIRECTIONS = (
     (0.4143, 0.3570, 0.8372),

@@ -18,9 +18,9 @@ import torch.nn.functional as F
 from torch import Tensor
 
 from benchmarks.report import Results, main
-from skinnet.camera import LIGHTS, inverse3
-from skinnet.capture import Capture
-from skinnet.decoder import SkinDecoder
+from skinnet.physics.camera import LIGHTS, inverse3
+from skinnet.physics.capture import Capture
+from skinnet.physics.decoder import SkinDecoder
 
 Picture = Callable[[Tensor, Tensor, Capture], Tensor]
 

@@ -9,11 +9,11 @@ import torch
 from numpy.typing import NDArray
 from PIL import Image
 
-from skinnet.camera import inverse3, srgb_to_xyz
-from skinnet.daylight import daylight
-from skinnet.faces import resize
-from skinnet.images import linear_to_srgb, srgb_to_linear, to_uint8
-from skinnet.spectra import observer, table
+from skinnet.images.faces import resize
+from skinnet.images.photograph import linear_to_srgb, srgb_to_linear, to_uint8
+from skinnet.physics.camera import inverse3, srgb_to_xyz
+from skinnet.physics.daylight import daylight
+from skinnet.physics.spectra import observer, table
 
 Photograph = NDArray[np.uint8]
 

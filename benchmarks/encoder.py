@@ -34,12 +34,12 @@ from benchmarks.report import Results, main
 from benchmarks.scene import Pixels, Scene, scene
 from benchmarks.scores import Scores
 from benchmarks.targets import ASKED, layout, not_beaten
-from skinnet import __version__
-from skinnet.autoencoder import SkinAutoencoder
-from skinnet.decoder import SkinDecoder
+from skinnet._version import __version__
 from skinnet.errors import InputError
-from skinnet.weights import SHIPPED, load_weights, read_weights
-from train.twin.faces import Lots, TwinFaces
+from skinnet.network.autoencoder import SkinAutoencoder
+from skinnet.network.weights import SHIPPED, load_weights, read_weights
+from skinnet.physics.decoder import SkinDecoder
+from train.synthetic.faces import Lots, SyntheticFaces
 
 SHARED = Path(__file__).parents[2] / "shared" / "data"
 WEIGHTS = {"stage1": Path(__file__).parent / "stage1.safetensors", "stage2": SHIPPED}
@@ -84,9 +84,9 @@ def training_means(settings: TestSet, decoder: SkinDecoder) -> dict[str, Tensor]
     return means(scene(data.render(lot, "train"), decoder) for lot in batches)
 
 
-def _twin(settings: TestSet, size: int, test: int = 1, val: int = 1) -> TwinFaces:
+def _twin(settings: TestSet, size: int, test: int = 1, val: int = 1) -> SyntheticFaces:
     ict = settings.ict if settings.ict and Path(settings.ict).is_file() else None
-    return TwinFaces(
+    return SyntheticFaces(
         size,
         settings.batch_size,
         val_heads=val,

@@ -23,14 +23,14 @@ from scipy.ndimage import zoom
 from scipy.spatial.transform import Rotation
 
 from benchmarks.report import Results, main
-from skinnet.shape.mesh import Mesh
+from skinnet.mesh.mesh import Mesh
 from skinnet.shape.model import ShapeModel
 from skinnet.shape.moments import gather
 from skinnet.shape.procedural import IDENTITY, chart, relief
 from skinnet.shape.registration import Registration, register
+from skinnet.shape.scan_points import Surface
 from skinnet.shape.separable import Separable
 from skinnet.shape.similarity import Similarity, similarity
-from skinnet.shape.surface import Surface
 
 VERTICES, MODES = 53_490, 199
 TARGET = 100_000

@@ -20,11 +20,11 @@ from torch import Tensor, nn
 from torch.utils.data import default_collate
 
 from benchmarks.report import Results, main
-from skinnet.camera import SpectralCamera
-from skinnet.capture import Capture
-from skinnet.decoder import SkinDecoder
-from train.twin.camera import pictured, toned
-from train.twin.lot import HEMOGLOBIN, MELANIN, draw_camera, draw_light, draw_regions
+from skinnet.physics.camera import SpectralCamera
+from skinnet.physics.capture import Capture
+from skinnet.physics.decoder import SkinDecoder
+from train.synthetic.camera import pictured, toned
+from train.synthetic.lot import HEMOGLOBIN, MELANIN, draw_camera, draw_light, draw_regions
 
 DRAWN, SCORED, STEPS, BATCH = 70_000, 10_000, 1500, 4096
 GLOSS = 0.032, 0.38

@@ -22,7 +22,7 @@ from skimage.data import astronaut
 from benchmarks.biofacenet import BioFaceNetShape
 from benchmarks.report import main
 from export.onnx_file import quiet
-from skinnet.runtime import shipped_model
+from skinnet.inference.decomposer import shipped_model
 
 RUNS = {256: 4, 512: 2}
 """Runs at each size, the first of which warms up."""

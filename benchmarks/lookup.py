@@ -19,13 +19,13 @@ from scipy.spatial import cKDTree
 from torch import Tensor
 
 from benchmarks.report import Results, main
-from skinnet.inversion import F_BLOOD_RANGE, F_MEL_RANGE, SkinInverse
-from skinnet.lightstage import spectrum_matrix
-from skinnet.lookup import SkinLookup
-from skinnet.nearest import NearestNode
-from skinnet.reflectance import SkinReflectance
-from train.twin.lot import draw_lot
-from train.twin.paint import Paint, paint_skin
+from skinnet.physics.inversion import F_BLOOD_RANGE, F_MEL_RANGE, SkinInverse
+from skinnet.physics.lookup import SkinLookup
+from skinnet.physics.nearest_colour import NearestNode
+from skinnet.physics.reflectance import SkinReflectance
+from skinnet.physics.sources import spectrum_matrix
+from train.synthetic.lot import draw_lot
+from train.synthetic.paint import Paint, paint_skin
 
 SIZE, NODES, ROUNDS, REPEATS = 1024, 256, 2, 3
 WORKERS = 2

@@ -21,10 +21,10 @@ from benchmarks.reader import Reader, composed, resized
 from benchmarks.report import Results
 from benchmarks.scene import under_daylight
 from benchmarks.typology import GROUPS, group, typology_angle
-from skinnet.autoencoder import SkinMaps
-from skinnet.decoder import SkinDecoder
-from skinnet.faces import crop_box, find_face, resize, skin_mask
-from skinnet.images import read_photo, srgb_to_linear
+from skinnet.images.faces import crop_box, find_face, resize, skin_mask
+from skinnet.images.photograph import read_photo, srgb_to_linear
+from skinnet.network.autoencoder import SkinMaps
+from skinnet.physics.decoder import SkinDecoder
 
 LARGEST = 256
 """Longest side of the crops, in pixels; smaller ones are left as they are."""

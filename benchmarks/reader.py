@@ -10,10 +10,10 @@ from numpy.typing import NDArray
 from torch import Tensor
 
 from benchmarks.scene import Pixels, Scene, on
-from skinnet.autoencoder import SkinAutoencoder, SkinMaps
-from skinnet.capture import Capture
-from skinnet.decoder import SkinDecoder
-from skinnet.faces import resize
+from skinnet.images.faces import resize
+from skinnet.network.autoencoder import SkinAutoencoder, SkinMaps
+from skinnet.physics.capture import Capture
+from skinnet.physics.decoder import SkinDecoder
 
 LEAST_SIDE = 16
 

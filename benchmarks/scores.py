@@ -8,7 +8,7 @@ from torch import Tensor
 from benchmarks.moments import Moments
 from benchmarks.scene import Pixels, Scene, mean_by
 from benchmarks.typology import GROUPS, group
-from skinnet.autoencoder import F_MEL_MAX
+from skinnet.network.autoencoder import F_MEL_MAX
 
 PIGMENTS = {"melanin": F_MEL_MAX, "hemoglobin": 0.07}
 """The fractions that are 1 on BioFaceNet's look-up grid."""

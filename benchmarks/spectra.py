@@ -14,11 +14,11 @@ from jaxtyping import Float
 from torch import Tensor
 
 from benchmarks.report import Results, main
-from skinnet.camera import spectrum_to_srgb
-from skinnet.daylight import daylight
-from skinnet.optics import PRESETS, SkinOptics
-from skinnet.reflectance import SkinReflectance
-from skinnet.spectra import observer, table
+from skinnet.physics.camera import spectrum_to_srgb
+from skinnet.physics.daylight import daylight
+from skinnet.physics.optics import PRESETS, SkinOptics
+from skinnet.physics.reflectance import SkinReflectance
+from skinnet.physics.spectra import observer, table
 
 Model = Callable[[Tensor, Tensor], Tensor]
 

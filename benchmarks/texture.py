@@ -16,10 +16,10 @@ from scipy.spatial import Delaunay
 from skimage.transform import PiecewiseAffineTransform, warp
 
 from benchmarks.report import Results, main
-from skinnet.shape.mirror import mirror_vertices
-from skinnet.shape.raster import rasterise
-from skinnet.shape.tutte import flipped, tutte
-from skinnet.shape.warp import TextureSpace, warp_texture
+from skinnet.mesh.raster import rasterise
+from skinnet.texture.mirror import mirror_vertices
+from skinnet.texture.tutte import flipped, tutte
+from skinnet.texture.warp import TextureSpace, warp_texture
 
 VERTICES = 53_490
 SIZE = 1024

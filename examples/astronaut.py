@@ -10,8 +10,8 @@ from pathlib import Path
 from skimage.data import astronaut
 
 from skinnet import Decomposer
-from skinnet.images import write_png
-from skinnet.panel import picture, pigment, sheet
+from skinnet.images.photograph import write_png
+from skinnet.inference.panel import picture, pigment, sheet
 
 TARGET = Path("demo/astronaut.png")
 

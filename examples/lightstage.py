@@ -18,16 +18,16 @@ import torch
 import torch.nn.functional as F
 
 from skinnet.appearance.colour import SkinColour
-from skinnet.appearance.mapsfile import load_maps
+from skinnet.appearance.maps_file import load_maps
 from skinnet.cli import main as skinnet
-from skinnet.images import linear_to_srgb, to_uint8
-from skinnet.lightstage import spectrum_matrix
+from skinnet.images.photograph import linear_to_srgb, to_uint8
+from skinnet.mesh.mesh import Mesh
+from skinnet.mesh.mesh_file import write_mesh
+from skinnet.physics.sources import spectrum_matrix
 from skinnet.shape.default import default_model
 from skinnet.shape.landmarks import write_landmarks
-from skinnet.shape.mesh import Mesh
-from skinnet.shape.meshfile import write_mesh
-from train.twin.lot import draw_lot
-from train.twin.paint import Paint, paint_skin
+from train.synthetic.lot import draw_lot
+from train.synthetic.paint import Paint, paint_skin
 
 LIGHT, CAMERA = "LED-B3", "Nikon D200"
 FILTER = np.array([[0.80, 0.05, 0.01], [0.03, 0.86, 0.04], [0.01, 0.06, 0.92]])

@@ -21,16 +21,16 @@ from skimage.draw import polygon2mask, polygon_perimeter
 from skimage.morphology import dilation, disk, erosion
 
 from skinnet.appearance.hybrid import HybridModel
-from skinnet.appearance.mapsfile import save_maps
+from skinnet.appearance.maps_file import save_maps
 from skinnet.cli import main as skinnet
-from skinnet.images import read_photo, srgb_to_linear
+from skinnet.images.photograph import read_photo, srgb_to_linear
 from skinnet.pipeline.calibrate import ColourSettings
 from skinnet.pipeline.maps import invert
 from skinnet.shape.procedural import chart
-from skinnet.shape.warp import TextureSpace, Warped, warp_texture
-from train.twin.lot import CHART
-from train.twin.skinfile import save_skins
-from train.twin.skins import Place, draw_skins
+from skinnet.texture.warp import TextureSpace, Warped, warp_texture
+from train.synthetic.lot import CHART
+from train.synthetic.skinfile import save_skins
+from train.synthetic.skins import Place, draw_skins
 
 SIZE = 512
 MARGIN = 0.02

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 from skinnet.errors import InputError
 
 if TYPE_CHECKING:
-    from skinnet.autoencoder import SkinAutoencoder
+    from skinnet.network.autoencoder import SkinAutoencoder
 
 
 def main(arguments: Sequence[str] | None = None) -> int:
@@ -75,8 +75,8 @@ def _export(checkpoint: Path, output: Path, half: bool) -> None:
 
 
 def _load(path: Path) -> "tuple[SkinAutoencoder, str]":
-    from skinnet.checkpoint import load_checkpoint
-    from skinnet.weights import load_weights, read_weights
+    from skinnet.network.checkpoint import load_checkpoint
+    from skinnet.network.weights import load_weights, read_weights
 
     if path.suffix == ".safetensors":
         return load_weights(path), read_weights(path)[0]["skinnet.trained_on"]

@@ -5,7 +5,7 @@ from typing import Any
 import torch
 from torch import Tensor, nn
 
-from skinnet.autoencoder import (
+from skinnet.network.autoencoder import (
     CAMERA_MAX,
     F_BLOOD_MAX,
     F_MEL_MAX,
@@ -13,8 +13,8 @@ from skinnet.autoencoder import (
     WHITE_BALANCE_MAX,
     SkinAutoencoder,
 )
-from skinnet.capture import Capture
-from skinnet.decoder import SkinDecoder, srgb
+from skinnet.physics.capture import Capture
+from skinnet.physics.decoder import SkinDecoder, srgb
 
 Output = dict[str, Any]
 

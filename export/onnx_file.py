@@ -17,13 +17,13 @@ from torch import Tensor, nn
 from torch.export import Dim
 
 from export.graphs import DECODED, OUTPUTS, PIXELS, DecoderGraph, EncoderGraph, Output, example
-from skinnet import __version__
-from skinnet.autoencoder import SkinAutoencoder
-from skinnet.camera import LIGHTS
+from skinnet._version import __version__
 from skinnet.errors import InputError
 from skinnet.files import written_together
-from skinnet.model_file import FORMAT, decoder_path
-from skinnet.weights import save_weights
+from skinnet.inference.onnx_model import FORMAT, decoder_path
+from skinnet.network.autoencoder import SkinAutoencoder
+from skinnet.network.weights import save_weights
+from skinnet.physics.camera import LIGHTS
 
 OPSET = 20
 LICENSE = "MIT"
@@ -120,7 +120,7 @@ def _describe(
         "skinnet.version": __version__,
         "skinnet.outputs": json.dumps(outputs),
         "skinnet.lights": json.dumps(LIGHTS),
-        "skinnet.optics": model.config.optics,
+        "skinnet.physics.optics": model.config.optics,
         "skinnet.working_size": str(model.config.working_size),
         "skinnet.trained_on": trained_on,
         "skinnet.license": LICENSE,

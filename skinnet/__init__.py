@@ -3,21 +3,21 @@
 from importlib import import_module
 from typing import TYPE_CHECKING, Any
 
-__version__ = "0.1.0"
+from skinnet._version import __version__ as __version__
 
 if TYPE_CHECKING:
     from skinnet.appearance.hybrid import HybridModel
     from skinnet.appearance.joint import JointModel
     from skinnet.appearance.linear import LinearModel
-    from skinnet.autoencoder import SkinAutoencoder
-    from skinnet.camera import SpectralCamera
-    from skinnet.capture import Capture
-    from skinnet.decoder import SkinDecoder
-    from skinnet.encoder import SkinEncoder
-    from skinnet.lookup import SkinLookup
-    from skinnet.optics import SkinOptics
-    from skinnet.reflectance import SkinReflectance
-    from skinnet.runtime import Decomposer, Decomposition
+    from skinnet.inference.decomposer import Decomposer, Decomposition
+    from skinnet.network.autoencoder import SkinAutoencoder
+    from skinnet.network.encoder import SkinEncoder
+    from skinnet.physics.camera import SpectralCamera
+    from skinnet.physics.capture import Capture
+    from skinnet.physics.decoder import SkinDecoder
+    from skinnet.physics.lookup import SkinLookup
+    from skinnet.physics.optics import SkinOptics
+    from skinnet.physics.reflectance import SkinReflectance
     from skinnet.shape.model import ShapeModel
 
 __all__ = [
@@ -38,20 +38,20 @@ __all__ = [
 ]
 
 _ROOMS = {
-    "Capture": "capture",
-    "Decomposer": "runtime",
-    "Decomposition": "runtime",
+    "Capture": "physics.capture",
+    "Decomposer": "inference.decomposer",
+    "Decomposition": "inference.decomposer",
     "HybridModel": "appearance.hybrid",
     "JointModel": "appearance.joint",
     "LinearModel": "appearance.linear",
     "ShapeModel": "shape.model",
-    "SkinAutoencoder": "autoencoder",
-    "SkinDecoder": "decoder",
-    "SkinEncoder": "encoder",
-    "SkinLookup": "lookup",
-    "SkinOptics": "optics",
-    "SkinReflectance": "reflectance",
-    "SpectralCamera": "camera",
+    "SkinAutoencoder": "network.autoencoder",
+    "SkinDecoder": "physics.decoder",
+    "SkinEncoder": "network.encoder",
+    "SkinLookup": "physics.lookup",
+    "SkinOptics": "physics.optics",
+    "SkinReflectance": "physics.reflectance",
+    "SpectralCamera": "physics.camera",
 }
 _TORCH_EXTRA = frozenset({"torch", "jaxtyping", "kornia", "safetensors"})
 

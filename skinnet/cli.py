@@ -9,11 +9,11 @@ from io import BufferedIOBase
 from pathlib import Path
 from typing import TYPE_CHECKING, BinaryIO
 
-from skinnet import __version__
+from skinnet._version import __version__
 from skinnet.errors import InputError
 
 if TYPE_CHECKING:
-    from skinnet.runtime import Decomposer
+    from skinnet.inference.decomposer import Decomposer
 
 PIPELINE = {
     "fit-shape": "fit a shape model to scans",
@@ -113,7 +113,7 @@ def _add_common(verb: argparse.ArgumentParser) -> None:
 
 def predict(options: argparse.Namespace) -> int:
     """Decompose every input; report the bad ones and go on. 2 if any was bad."""
-    from skinnet.runtime import Decomposer
+    from skinnet.inference.decomposer import Decomposer
 
     decomposer = Decomposer(options.model)
     decomposer.load()
@@ -133,8 +133,8 @@ def predict(options: argparse.Namespace) -> int:
 def _predict_one(
     decomposer: "Decomposer", source: str, folder: Path, stem: str, options: argparse.Namespace
 ) -> None:
-    from skinnet.images import read_photo
-    from skinnet.results import write_results
+    from skinnet.images.photograph import read_photo
+    from skinnet.inference.results import write_results
 
     photo = read_photo(_readable(source), _name(source))
     decomposition = decomposer(photo, options.whole_image, _name(source), options.detail)
@@ -156,9 +156,9 @@ def _predict_one(
 
 def edit(options: argparse.Namespace) -> int:
     """Write one photograph with its pigments multiplied."""
-    from skinnet.images import read_photo
-    from skinnet.results import check_suffix, write_picture
-    from skinnet.runtime import Decomposer
+    from skinnet.images.photograph import read_photo
+    from skinnet.inference.decomposer import Decomposer
+    from skinnet.inference.results import check_suffix, write_picture
 
     source: str = options.input
     target: Path = options.output or _beside(source).parent / f"{_stem(source)}_edited.png"
@@ -191,7 +191,7 @@ def _photographs(inputs: Sequence[str]) -> Iterator[str | InputError]:
 
 
 def _inside(folder: Path) -> list[str | InputError]:
-    from skinnet.images import SUFFIXES
+    from skinnet.images.photograph import SUFFIXES
 
     shown = (file for file in sorted(folder.iterdir()) if not file.name.startswith("."))
     found = [str(file) for file in shown if file.suffix.lower() in SUFFIXES and file.is_file()]

@@ -1,12 +1,20 @@
 """Files that appear whole or not at all."""
 
 import os
+import struct
+import zlib
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from pathlib import Path
 from secrets import token_hex
 
 from skinnet.errors import InputError
+
+BROKEN = (
+    *(OSError, SyntaxError, ValueError, EOFError, TypeError, RuntimeError, MemoryError),
+    *(ArithmeticError, LookupError, AttributeError, struct.error, zlib.error),
+)
+"""What readers of pictures, meshes and arrays raise on damaged files."""
 
 
 @contextmanager

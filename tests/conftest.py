@@ -15,8 +15,8 @@ install_import_hook("skinnet", "beartype.beartype")
 
 import torch  # noqa: E402
 
-from skinnet.camera import COMPONENTS, LIGHTS  # noqa: E402
-from skinnet.capture import Capture  # noqa: E402
+from skinnet.physics.camera import COMPONENTS, LIGHTS  # noqa: E402
+from skinnet.physics.capture import Capture  # noqa: E402
 
 settings.register_profile(
     "skinnet", deadline=None, max_examples=25, derandomize=True, database=None

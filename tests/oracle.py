@@ -14,7 +14,7 @@ from numpy.typing import ArrayLike, NDArray
 
 Array = NDArray[np.float64]
 
-TABLES = Path(__file__).parents[1] / "skinnet" / "tables"
+TABLES = Path(__file__).parents[1] / "skinnet" / "physics" / "tables"
 WAVELENGTHS = np.arange(400.0, 721.0, 10.0)
 D65 = np.array([0.3127 / 0.3290, 1.0, (1 - 0.3127 - 0.3290) / 0.3290])
 

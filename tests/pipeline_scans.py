@@ -7,11 +7,11 @@ import torch
 from scipy.spatial.transform import Rotation
 
 from skinnet.appearance.colour import SkinColour
-from skinnet.images import linear_to_srgb, to_uint8
+from skinnet.images.photograph import linear_to_srgb, to_uint8
+from skinnet.mesh.mesh import Mesh
+from skinnet.mesh.mesh_file import write_mesh
 from skinnet.shape.default import default_model
 from skinnet.shape.landmarks import write_landmarks
-from skinnet.shape.mesh import Mesh
-from skinnet.shape.meshfile import write_mesh
 
 SIZE = 48
 FAST = ("--fit.stages", "[[500, 10, 30.0], [2000, 0, 0.1]]")

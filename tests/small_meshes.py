@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from skinnet.shape.mesh import Mesh
+from skinnet.mesh.mesh import Mesh
 from skinnet.shape.model import ShapeModel
 
 ROWS, COLUMNS = 9, 7

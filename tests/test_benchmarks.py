@@ -9,8 +9,8 @@ import torch
 
 from benchmarks import appearance, decoder, lookup, report, spectra
 from benchmarks.biofacenet import BioFaceNetShape
-from skinnet.optics import PRESETS
-from skinnet.reflectance import SkinReflectance
+from skinnet.physics.optics import PRESETS
+from skinnet.physics.reflectance import SkinReflectance
 
 
 @pytest.fixture(scope="module")

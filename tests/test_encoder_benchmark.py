@@ -18,9 +18,9 @@ from benchmarks.reader import NetworkReader, composed
 from benchmarks.scene import Pixels, Scene, under_daylight
 from benchmarks.scores import Scores
 from benchmarks.typology import GROUPS, group, typology_angle
-from skinnet.autoencoder import AutoencoderConfig, SkinAutoencoder, SkinMaps
-from skinnet.camera import SpectralCamera
-from skinnet.decoder import SkinDecoder
+from skinnet.network.autoencoder import AutoencoderConfig, SkinAutoencoder, SkinMaps
+from skinnet.physics.camera import SpectralCamera
+from skinnet.physics.decoder import SkinDecoder
 
 PIGMENT = {"rmse", "rmse_ratio", "r_pixel", "r_image", "grid_rmse"}
 COLUMNS = {"diffuse", "specular", "albedo", "reconstruction", "mask_iou", "leak", "group_ratio"}

@@ -5,8 +5,8 @@ from pathlib import Path
 import pytest
 import torch
 
-from skinnet.autoencoder import AutoencoderConfig, SkinAutoencoder
-from skinnet.checkpoint import describe, load_checkpoint
+from skinnet.network.autoencoder import AutoencoderConfig, SkinAutoencoder
+from skinnet.network.checkpoint import describe, load_checkpoint
 from tools.mean import main
 
 

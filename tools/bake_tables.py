@@ -15,7 +15,7 @@ import colour
 import numpy as np
 
 BANDS = np.arange(400, 721, 10)
-TARGET = Path(__file__).parents[1] / "skinnet" / "tables"
+TARGET = Path(__file__).parents[1] / "skinnet" / "physics" / "tables"
 ILLUMINANTS = ("A", "FL2", "FL7", "FL11", "LED-B1", "LED-B3", "LED-B5", "LED-V1")
 
 

@@ -12,7 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 from skimage.data import astronaut
 
-from skinnet.model_file import GLOBALS, MAPS, open_model, shipped_model
+from skinnet.inference.onnx_model import GLOBALS, MAPS, open_model, shipped_model
 
 GOLDEN = Path(__file__).parents[1] / "tests" / "golden.json"
 PLACES = ((20, 30), (45, 38), (50, 52), (60, 45), (66, 50), (90, 20))

@@ -14,9 +14,9 @@ from typing import Any
 import torch
 from torch import Tensor
 
-from skinnet.checkpoint import checkpoint_of, load_checkpoint
 from skinnet.errors import InputError
 from skinnet.files import atomic
+from skinnet.network.checkpoint import checkpoint_of, load_checkpoint
 
 
 def mean(earlier: Path, later: Path) -> dict[str, Any]:

@@ -4,8 +4,8 @@ from typing import NamedTuple
 
 from torch import Tensor
 
-from skinnet.autoencoder import SkinMaps
-from skinnet.capture import Capture
+from skinnet.network.autoencoder import SkinMaps
+from skinnet.physics.capture import Capture
 
 
 class Batch(NamedTuple):

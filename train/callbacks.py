@@ -11,8 +11,8 @@ from lightning.pytorch.loggers import TensorBoardLogger
 from PIL import Image
 from torch import Tensor
 
-from skinnet.autoencoder import F_BLOOD_MAX, F_MEL_MAX, Reading
-from skinnet.decoder import srgb
+from skinnet.network.autoencoder import F_BLOOD_MAX, F_MEL_MAX, Reading
+from skinnet.physics.decoder import srgb
 from train.batch import Batch
 from train.task import Batches, by_name
 

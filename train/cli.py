@@ -18,18 +18,17 @@ from lightning.pytorch.cli import LightningArgumentParser, LightningCLI
 from lightning.pytorch.loggers import TensorBoardLogger
 from lightning.pytorch.utilities.exceptions import MisconfigurationException
 
-from skinnet.checkpoint import read_checkpoint
 from skinnet.errors import InputError
+from skinnet.network.checkpoint import read_checkpoint
 from train.callbacks import LastCheckpoint, PictureGrid
 from train.fitted import FittedFaces
 from train.guards import FiniteGuard
 from train.logs import CurveLogger
 from train.portraits import Portraits
-from train.synthetic import SyntheticFaces
+from train.synthetic.faces import SyntheticFaces
 from train.task import SkinTask
-from train.twin.faces import TwinFaces
 
-__all__ = ["FittedFaces", "Portraits", "SkinCLI", "SyntheticFaces", "TwinFaces", "main"]
+__all__ = ["FittedFaces", "Portraits", "SkinCLI", "SyntheticFaces", "main"]
 
 
 class SentenceParser(LightningArgumentParser):

@@ -14,24 +14,24 @@ from torch import Tensor
 from torch.utils.data import DataLoader, Dataset
 
 from skinnet.appearance.hybrid import HybridModel
-from skinnet.appearance.mapsfile import load_maps
+from skinnet.appearance.maps_file import load_maps
 from skinnet.appearance.subjects import SkinTexture
-from skinnet.autoencoder import F_BLOOD_MAX, F_MEL_MAX
-from skinnet.decoder import SkinDecoder
 from skinnet.errors import InputError
+from skinnet.mesh.mesh_file import read_mesh
+from skinnet.network.autoencoder import F_BLOOD_MAX, F_MEL_MAX
+from skinnet.physics.decoder import SkinDecoder
 from skinnet.render.camera import front
 from skinnet.render.scene import Scene
 from skinnet.render.visibility import geometry
-from skinnet.shape.meshfile import read_mesh
 from train.batch import Batch
 from train.stream import StreamLoader, seen_samples
-from train.twin.cache import SPLITS
-from train.twin.camera import pictured
-from train.twin.faces import Drawn
-from train.twin.light import shade
-from train.twin.lot import draw_camera, draw_gloss, draw_light
-from train.twin.picture import Skin, developed, normals, openness
-from train.twin.views import facing
+from train.synthetic.cache import SPLITS
+from train.synthetic.camera import pictured
+from train.synthetic.faces import Drawn
+from train.synthetic.light import shade
+from train.synthetic.lot import draw_camera, draw_gloss, draw_light
+from train.synthetic.picture import Skin, developed, normals, openness
+from train.synthetic.views import facing
 
 MAPS = "_maps.npz"
 TURN, TILT, FIELD = 25.0, 8.0, 24.0
@@ -43,7 +43,7 @@ OIL = 1.0
 
 class View(NamedTuple):
     """What a camera sees of one face, [size, size, ...]: `hit` is 1 where there is any of it, `uv`
-    as `grid_sample` counts it, and the rest as in `train.twin.views.Buffers`."""
+    as `grid_sample` counts it, and the rest as in `train.synthetic.views.Buffers`."""
 
     hit: NDArray[np.float32]
     uv: NDArray[np.float32]
@@ -77,7 +77,7 @@ class FittedFaces(LightningDataModule):
     """Scans fitted by `skinnet maps`, seen from many sides in many lights, with their true maps.
 
     Every face is ray-cast once from `shots` sides; lights, cameras and exposure are those of
-    `TwinFaces`, drawn afresh on every step and rendered on the device that trains. Faces throw
+    `SyntheticFaces`, drawn afresh on every step and rendered on the device that trains. Faces throw
     shadows on themselves, and hollows see less of the sky.
 
     Args:
@@ -210,7 +210,7 @@ def _shot(scene: Scene, size: int, turn: float, tilt: float) -> View:
 
 @torch.no_grad()
 def render_fitted(lot: dict[str, Tensor], decoder: SkinDecoder, split: str = "train") -> Batch:
-    """Photographs of a batch of lots with their truth, as `train.twin.picture.render` gives."""
+    """Photographs of a batch of lots with their truth, as `train.synthetic` gives."""
     over = F.grid_sample(torch.cat([lot["skin"], lot["known"]], 1), lot["uv"], align_corners=False)
     blood, melanin, offset, known = over.split([1, 1, 3, 1], 1)
     melanin, blood = melanin[:, 0].clamp(0, F_MEL_MAX), blood[:, 0].clamp(0, F_BLOOD_MAX)

@@ -4,7 +4,7 @@ import torch
 from kornia.color import rgb_to_linear_rgb
 from torch import Tensor
 
-from skinnet.autoencoder import Reading
+from skinnet.network.autoencoder import Reading
 from train.batch import Batch
 
 

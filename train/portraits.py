@@ -16,13 +16,13 @@ from numpy.typing import NDArray
 from torch.utils.data import DataLoader, Dataset
 
 from skinnet.errors import InputError
-from skinnet.faces import crop_box, find_face, resize, skin_mask
 from skinnet.files import write_text
-from skinnet.images import linear_to_srgb, read_photo, srgb_to_linear, to_uint8
+from skinnet.images.faces import crop_box, find_face, resize, skin_mask
+from skinnet.images.photograph import linear_to_srgb, read_photo, srgb_to_linear, to_uint8
 from train.batch import Batch
 from train.guards import listed
 from train.stream import StreamLoader, seen_samples
-from train.twin.faces import Drawn, TwinFaces
+from train.synthetic.faces import Drawn, SyntheticFaces
 
 SUFFIXES = (".jpg", ".jpeg", ".png", ".tif", ".tiff", ".webp")
 Share = restricted_number_type("Share", float, [(">=", 0), ("<", 1)])
@@ -78,7 +78,7 @@ def varied(crop: Crop, draw: np.random.Generator) -> Crop:
 
 
 class Portraits(LightningDataModule):
-    """Photographs of faces, found, cropped and masked by `skinnet.faces`.
+    """Photographs of faces, found, cropped and masked by `skinnet.images.faces`.
 
     Unreadable pictures and pictures without a face are skipped, counted, and listed in
     `skipped.csv` of the run. Every step also sees a batch of `twin`, so that the maps keep their
@@ -104,7 +104,7 @@ class Portraits(LightningDataModule):
         val_share: Share = 0.1,  # type: ignore[valid-type]
         unreadable_share: Share = 0.1,  # type: ignore[valid-type]
         seed: NonNegativeInt = 0,
-        twin: TwinFaces | None = None,
+        twin: SyntheticFaces | None = None,
     ):
         super().__init__()
         self.folder = Path(folder)
@@ -113,7 +113,7 @@ class Portraits(LightningDataModule):
         self.val_share = val_share
         self.unreadable_share = unreadable_share
         self.seed = seed
-        self.twin = twin or TwinFaces(size=size, batch_size=batch_size)
+        self.twin = twin or SyntheticFaces(size=size, batch_size=batch_size)
         self.crops: dict[str, list[Crop]] = {}
 
     @property

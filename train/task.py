@@ -12,13 +12,13 @@ from torch import Tensor
 from torch.optim import AdamW, Optimizer
 from torch.optim.lr_scheduler import LambdaLR
 
-from skinnet import losses
-from skinnet.autoencoder import AutoencoderConfig, Reading, SkinAutoencoder, SkinMaps
-from skinnet.capture import Capture
-from skinnet.checkpoint import describe
-from skinnet.encoder import WIDTHS
 from skinnet.errors import InputError
-from skinnet.weights import read_weights
+from skinnet.network import losses
+from skinnet.network.autoencoder import AutoencoderConfig, Reading, SkinAutoencoder, SkinMaps
+from skinnet.network.checkpoint import describe
+from skinnet.network.encoder import WIDTHS
+from skinnet.network.weights import read_weights
+from skinnet.physics.capture import Capture
 from train.batch import Batch
 from train.metrics import measure
 

@@ -8,9 +8,9 @@ import torch
 from jaxtyping import Float, Float32
 from torch import Tensor, nn
 
-from skinnet.camera import SpectralCamera
-from skinnet.lookup import SkinLookup
-from skinnet.reflectance import SkinReflectance
+from skinnet.physics.camera import SpectralCamera
+from skinnet.physics.lookup import SkinLookup
+from skinnet.physics.reflectance import SkinReflectance
 
 NODES = (256, 256)
 """Nodes of the table in f_mel and f_blood: those of the inverse rendering."""

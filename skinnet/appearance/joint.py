@@ -7,7 +7,7 @@ import torch
 from jaxtyping import Float
 from torch import Tensor, nn
 
-from skinnet.appearance import modelfile
+from skinnet.appearance import model_file
 from skinnet.appearance.columns import ArrayColumns
 from skinnet.appearance.principal import (
     PrincipalComponents,
@@ -113,23 +113,23 @@ class JointModel(nn.Module):
         """Write the model as .npz, whole or not at all. Raises `InputError` for another suffix."""
         found = self.statistics
         header = {"weight": self.weight, "total": found.total, "subjects": found.subjects}
-        arrays = {name: getattr(found, name) for name in modelfile.STATISTICS}
+        arrays = {name: getattr(found, name) for name in model_file.STATISTICS}
         arrays["deviations"] = self.deviations
-        modelfile.write(path, type(self).__name__, header, arrays)
+        model_file.write(path, type(self).__name__, header, arrays)
 
     @classmethod
     def load(cls, path: Path) -> "JointModel":
         """Read a model. Raises `InputError` for a file that is missing, damaged or another's."""
-        names = (*modelfile.STATISTICS, "deviations")
-        header, arrays = modelfile.read(path, cls.__name__, names)
-        statistics = modelfile.as_statistics(path, header, arrays)
+        names = (*model_file.STATISTICS, "deviations")
+        header, arrays = model_file.read(path, cls.__name__, names)
+        statistics = model_file.as_statistics(path, header, arrays)
         deviations = arrays["deviations"]
         if deviations.ndim != 1 or len(deviations) > len(statistics.mean.T):
-            raise modelfile.damaged(path)
+            raise model_file.damaged(path)
         try:
             return cls(statistics, deviations, float(header["weight"]))
-        except modelfile.BROKEN as error:
-            raise modelfile.damaged(path) from error
+        except model_file.BROKEN as error:
+            raise model_file.damaged(path) from error
 
 
 def equal_weight(

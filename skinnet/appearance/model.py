@@ -9,7 +9,7 @@ import torch
 from jaxtyping import Bool, Float, Float32
 from torch import Tensor, nn
 
-from skinnet.appearance import modelfile
+from skinnet.appearance import model_file
 from skinnet.appearance.colour import SkinColour
 from skinnet.appearance.columns import Columns
 from skinnet.appearance.mixtures import Errors
@@ -170,7 +170,7 @@ class AppearanceModel(nn.Module, ABC):
 
     def save(self, path: Path) -> None:
         """Write the model as .npz, whole or not at all. Raises `InputError` for another suffix."""
-        modelfile.save(path, type(self).__name__, self.statistics, self.mask, self.colour)
+        model_file.save(path, type(self).__name__, self.statistics, self.mask, self.colour)
 
     @classmethod
     def load(cls: type[Model], path: Path) -> Model:
@@ -178,4 +178,4 @@ class AppearanceModel(nn.Module, ABC):
 
         Nothing in it is unpickled.
         """
-        return cls(*modelfile.load(path, cls.__name__))
+        return cls(*model_file.load(path, cls.__name__))

@@ -15,23 +15,23 @@ from skinnet.appearance.hybrid import HybridModel
 from skinnet.appearance.joint import JointModel
 from skinnet.appearance.joint_measures import measure_joint
 from skinnet.appearance.linear import LinearModel
-from skinnet.appearance.mapsfile import load_maps
+from skinnet.appearance.maps_file import load_maps
 from skinnet.appearance.measures import Measures, measure
-from skinnet.appearance.plots import Renderer, hybrid_sheet, linear_sheet, write_measures
 from skinnet.appearance.scales import equal_effect
 from skinnet.appearance.spool import spool
 from skinnet.appearance.stack import SubjectStack
 from skinnet.appearance.subjects import SkinTexture
 from skinnet.errors import InputError
 from skinnet.files import write_text
-from skinnet.images import read_photo, write_png
-from skinnet.panel import TILE
+from skinnet.images.photograph import read_photo, write_png
+from skinnet.inference.panel import TILE
+from skinnet.mesh.mesh_file import read_mesh
 from skinnet.pipeline.command import add_output, output_folder
+from skinnet.pipeline.fit_file import load_fit
+from skinnet.pipeline.model_plots import Renderer, hybrid_sheet, linear_sheet, write_measures
 from skinnet.pipeline.progress import digest, say
 from skinnet.pipeline.relight import RelightSettings
 from skinnet.pipeline.scans import OUTPUT, ScanOptions
-from skinnet.pipeline.shapefile import load_fit
-from skinnet.shape.meshfile import read_mesh
 
 FOLDER = Path("skinmodel")
 MAPS = "_maps.npz"

@@ -12,15 +12,15 @@ import torch
 from jaxtyping import Float
 
 from skinnet.appearance.colour import SkinColour
-from skinnet.calibration import calibrate
+from skinnet.calibration.calibrate import calibrate
+from skinnet.calibration.exposure import exposure
 from skinnet.errors import InputError
-from skinnet.exposure import exposure
-from skinnet.images import srgb_to_linear
-from skinnet.inversion import SkinInverse
-from skinnet.lightstage import spectrum_matrix
-from skinnet.optics import SkinOptics
+from skinnet.images.photograph import srgb_to_linear
+from skinnet.physics.inversion import SkinInverse
+from skinnet.physics.optics import SkinOptics
+from skinnet.physics.reflectance import SkinReflectance
+from skinnet.physics.sources import spectrum_matrix
 from skinnet.pipeline.progress import say
-from skinnet.reflectance import SkinReflectance
 
 WAYS = ("exposure", "common", "full", "none")
 NODES = (256, 256)

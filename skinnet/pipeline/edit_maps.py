@@ -7,16 +7,16 @@ from jaxtyping import Float
 from jsonargparse import ArgumentParser, Namespace
 
 from skinnet.appearance.edit import PigmentEdit, edited
-from skinnet.appearance.mapsfile import load_maps, save_maps
+from skinnet.appearance.maps_file import load_maps, save_maps
 from skinnet.appearance.subjects import SkinTexture
-from skinnet.images import read_photo, write_png
-from skinnet.panel import picture, round_top, sheet
+from skinnet.images.photograph import read_photo, write_png
+from skinnet.inference.panel import picture, round_top, sheet
+from skinnet.mesh.mesh_file import read_mesh, write_mesh
 from skinnet.pipeline.build_model import MAPS
 from skinnet.pipeline.command import add_output, output_folder
-from skinnet.pipeline.mapfiles import covered, pigment_tiles, shown, textured
+from skinnet.pipeline.maps_output import covered, pigment_tiles, shown, textured
 from skinnet.pipeline.progress import say
 from skinnet.pipeline.relight import RelightSettings
-from skinnet.shape.meshfile import read_mesh, write_mesh
 
 PIGMENTS = ("melanin", "hemoglobin")
 

@@ -8,7 +8,11 @@ import numpy as np
 from jsonargparse import ArgumentParser, Namespace
 
 from skinnet.errors import InputError
-from skinnet.images import write_png
+from skinnet.images.photograph import write_png
+from skinnet.mesh.mesh import Mesh
+from skinnet.mesh.mesh_file import write_mesh
+from skinnet.pipeline.fit_file import load_fit, save_fit
+from skinnet.pipeline.initial_pose import find_initial_pose
 from skinnet.pipeline.preview import fit_sheet
 from skinnet.pipeline.progress import digest, finished, say, write_record
 from skinnet.pipeline.scans import (
@@ -20,10 +24,7 @@ from skinnet.pipeline.scans import (
     place,
     scan_options,
 )
-from skinnet.pipeline.shapefile import load_fit, save_fit
 from skinnet.shape.icp import FitSettings
-from skinnet.shape.mesh import Mesh
-from skinnet.shape.meshfile import write_mesh
 from skinnet.shape.model import ShapeModel
 from skinnet.shape.registration import Registration, register
 
@@ -84,7 +85,8 @@ def fitted(
     if finished(files[-1], fingerprint, files[:-1]) is not None:
         say(f"{files[0]} is there already and is kept.")
         return Fitted(scan, load_fit(files[0]), stem, fingerprint)
-    found = register(model, scan.mesh, scan.landmarks, fit, say)
+    start = find_initial_pose(model, scan.mesh) if scan.landmarks is None else None
+    found = register(model, scan.mesh, scan.landmarks, fit, say, start)
     _check(found, scan, model)
     save_fit(files[0], found)
     result = Fitted(scan, found, stem, fingerprint)

@@ -15,15 +15,15 @@ from skinnet.errors import InputError
 from skinnet.files import atomic
 from skinnet.pipeline.calibrate import Colours, ColourSettings
 from skinnet.pipeline.fit_shape import Fitted, fitted
-from skinnet.pipeline.mapfiles import ENDS, write_maps
+from skinnet.pipeline.maps_output import ENDS, write_maps
 from skinnet.pipeline.progress import digest, finished, say, write_record
 from skinnet.pipeline.scans import add_scan_arguments, each_scan, scan_options
 from skinnet.shape.icp import FitSettings
-from skinnet.shape.mirror import mirror_vertices
 from skinnet.shape.model import ShapeModel
-from skinnet.shape.projection import NORMAL_LIMIT, project_texture
-from skinnet.shape.tutte import tutte
-from skinnet.shape.warp import TextureSpace, Warped
+from skinnet.texture.mirror import mirror_vertices
+from skinnet.texture.projection import NORMAL_LIMIT, project_texture
+from skinnet.texture.tutte import tutte
+from skinnet.texture.warp import TextureSpace, Warped
 
 DOUBTFUL = 0.5
 """Share of texels off the manifold above which maps are doubtful."""

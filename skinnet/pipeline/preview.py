@@ -3,12 +3,12 @@
 import numpy as np
 from jaxtyping import Float, UInt8
 
-from skinnet.panel import TILE, mapped, picture, sheet
+from skinnet.inference.panel import TILE, mapped, picture, sheet
+from skinnet.mesh.mesh import Mesh
 from skinnet.render.camera import Perspective, front
 from skinnet.render.lights import Directional, SphericalHarmonics
 from skinnet.render.shade import render
 from skinnet.render.visibility import geometry
-from skinnet.shape.mesh import Mesh
 from skinnet.shape.registration import Registration
 
 PLASTER = np.array([0.55, 0.53, 0.5])

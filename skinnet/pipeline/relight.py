@@ -7,10 +7,10 @@ import numpy as np
 from jaxtyping import Float32, UInt8
 
 from skinnet.errors import InputError
+from skinnet.mesh.mesh import Mesh
 from skinnet.render.camera import front
 from skinnet.render.lights import Directional, Light, SphericalHarmonics
 from skinnet.render.shade import SKIN_SPECULAR, render
-from skinnet.shape.mesh import Mesh
 
 Direction = tuple[float, float, float]
 

@@ -7,10 +7,10 @@ from jsonargparse import ArgumentParser, Namespace
 from PIL import Image
 
 from skinnet.appearance.hybrid import HybridModel
-from skinnet.appearance.mapsfile import save_maps
+from skinnet.appearance.maps_file import save_maps
 from skinnet.errors import InputError
-from skinnet.images import linear_to_srgb, to_uint8, write_png
-from skinnet.panel import picture, pigment_map, round_top, sheet
+from skinnet.images.photograph import linear_to_srgb, to_uint8, write_png
+from skinnet.inference.panel import picture, pigment_map, round_top, sheet
 from skinnet.pipeline.build_model import FOLDER
 from skinnet.pipeline.command import add_output, output_folder
 

@@ -9,14 +9,14 @@ from jaxtyping import Float
 from jsonargparse import ArgumentParser, Namespace
 
 from skinnet.errors import InputError
+from skinnet.mesh.mesh import Mesh
+from skinnet.mesh.mesh_file import read_mesh
+from skinnet.mesh.repair import check_mesh
 from skinnet.pipeline.command import add_output, output_folder
 from skinnet.pipeline.progress import say
 from skinnet.shape.landmarks import check_landmarks, read_landmarks
-from skinnet.shape.mesh import Mesh
-from skinnet.shape.meshfile import read_mesh
 from skinnet.shape.model import ShapeModel
-from skinnet.shape.modelfile import load_shape_model
-from skinnet.shape.repair import check_mesh
+from skinnet.shape.model_formats import load_shape_model
 
 BESIDE = (".ljson", ".pp", "_landmarks.csv", "_landmarks.json")
 """Ends of the names under which landmarks are looked for beside NAME.obj."""

@@ -12,8 +12,8 @@ import numpy as np
 from jaxtyping import Float
 
 from skinnet.errors import InputError
+from skinnet.mesh.normals import unit
 from skinnet.render.visibility import GeometryBuffers
-from skinnet.shape.normals import unit
 
 CONVOLUTION = np.repeat([1, 2 / 3, 1 / 4], [1, 3, 5])
 """A_l / pi, the clamped cosine in spherical harmonics of degree 0, 1 and 2 (Ramamoorthi &

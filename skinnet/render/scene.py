@@ -9,8 +9,8 @@ from embreex.rtcore_scene import EmbreeScene
 from jaxtyping import Bool, Float, Int
 
 from skinnet.errors import InputError
-from skinnet.shape.mesh import Mesh
-from skinnet.shape.normals import smooth_normals, unit
+from skinnet.mesh.mesh import Mesh
+from skinnet.mesh.normals import smooth_normals, unit
 
 BIAS = 1e-4
 """Distance from the surface at which shadow rays start, as a share of the mesh's extent."""

@@ -7,14 +7,14 @@ import numpy as np
 from jaxtyping import Float, Shaped, UInt8
 
 from skinnet.errors import InputError
-from skinnet.images import linear_to_srgb, to_uint8
+from skinnet.images.photograph import linear_to_srgb, to_uint8
+from skinnet.mesh.mesh import Mesh
+from skinnet.mesh.normals import unit
+from skinnet.mesh.sampling import bilinear
 from skinnet.render.camera import View
 from skinnet.render.lights import Light
 from skinnet.render.scene import Scene
 from skinnet.render.visibility import GeometryBuffers, geometry
-from skinnet.shape.mesh import Mesh
-from skinnet.shape.normals import unit
-from skinnet.shape.sampling import bilinear
 
 SKIN_SPECULAR = 0.028
 """Reflectance at normal incidence of skin, refractive index 1.4."""

@@ -6,10 +6,10 @@ from functools import cached_property
 import numpy as np
 from jaxtyping import Bool, Float, Int
 
+from skinnet.mesh.mesh import Mesh
+from skinnet.mesh.normals import unit
 from skinnet.render.camera import View
 from skinnet.render.scene import BIAS, Scene, disc, tangents, turned
-from skinnet.shape.mesh import Mesh
-from skinnet.shape.normals import unit
 
 
 @dataclass(frozen=True)

@@ -17,9 +17,9 @@ from scipy.io.matlab import MatReadError
 from scipy.spatial import cKDTree
 
 from skinnet.errors import InputError
-from skinnet.pixels import BROKEN
+from skinnet.files import BROKEN
+from skinnet.mesh.orientation import inside_out
 from skinnet.shape.model import ShapeModel, checked_model
-from skinnet.shape.orientation import inside_out
 
 _LANDMARKS = {
     "right_brow_inner": "right.eyebrow.inner_lower",

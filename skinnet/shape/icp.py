@@ -6,12 +6,12 @@ import numpy as np
 from jaxtyping import Bool, Float
 
 from skinnet.errors import InputError
+from skinnet.mesh.normals import smooth_normals
 from skinnet.shape.model import ShapeModel
 from skinnet.shape.moments import gather
-from skinnet.shape.normals import smooth_normals
+from skinnet.shape.scan_points import Nearest, Surface
 from skinnet.shape.separable import Separable, Solution, solve
 from skinnet.shape.similarity import Similarity
-from skinnet.shape.surface import Nearest, Surface
 
 NEAR = 25.0
 """A scan that half of the model's vertices miss by more than this, in mm, is another object."""

@@ -14,11 +14,11 @@ import numpy as np
 from jaxtyping import Float
 
 from skinnet.errors import InputError
+from skinnet.mesh.mesh_file import read_mesh
+from skinnet.mesh.mesh_parts import obj_positions
+from skinnet.mesh.seams import positions_in, share_coordinates
 from skinnet.shape.landmarks import ibug_name
-from skinnet.shape.meshfile import read_mesh
-from skinnet.shape.meshparts import obj_positions
 from skinnet.shape.model import ShapeModel, checked_model
-from skinnet.shape.seams import positions_in, share_coordinates
 
 NEUTRAL = "generic_neutral_mesh.obj"
 FACE = 9409

@@ -7,7 +7,7 @@ import numpy as np
 from jaxtyping import Bool, Float, Int
 
 from skinnet.errors import InputError
-from skinnet.shape.mesh import Mesh
+from skinnet.mesh.mesh import Mesh
 
 Numbers = Float[np.ndarray, "..."]
 Indices = Int[np.ndarray, "..."]

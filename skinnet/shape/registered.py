@@ -7,14 +7,14 @@ import numpy as np
 from jaxtyping import Float, Int
 
 from skinnet.errors import InputError
-from skinnet.shape.atlas import Page, join
-from skinnet.shape.mesh import Mesh
-from skinnet.shape.meshparts import Part, obj_positions, read_parts, stack
+from skinnet.mesh.mesh import Mesh
+from skinnet.mesh.mesh_parts import Part, obj_positions, read_parts, stack
+from skinnet.mesh.repair import guess_millimetres
+from skinnet.mesh.seams import positions_in, share_coordinates
+from skinnet.mesh.texture_atlas import Page, join
+from skinnet.mesh.topology import weld
 from skinnet.shape.model import ShapeModel
-from skinnet.shape.repair import guess_millimetres
-from skinnet.shape.seams import positions_in, share_coordinates
 from skinnet.shape.similarity import similarity
-from skinnet.shape.topology import weld
 
 ROUNDS = 3
 """Rounds of alignment to the mean; the second already changes it by less than a thousandth."""

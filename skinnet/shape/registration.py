@@ -7,14 +7,13 @@ import numpy as np
 from jaxtyping import Bool, Float
 
 from skinnet.errors import InputError
+from skinnet.mesh.mesh import Mesh
 from skinnet.shape.icp import FitSettings, Stage, StageRecord
-from skinnet.shape.mesh import Mesh
 from skinnet.shape.model import ShapeModel
 from skinnet.shape.moments import gather
+from skinnet.shape.scan_points import Surface
 from skinnet.shape.separable import Separable, solve
 from skinnet.shape.similarity import Similarity, similarity
-from skinnet.shape.surface import Surface
-from skinnet.shape.upright import upright_pose
 
 LANDMARK_NOISE = 2.0
 """Standard deviation in mm that landmarks are taken to have when they start a fit."""
@@ -59,19 +58,19 @@ def register(
     landmarks: Mapping[str, Float[np.ndarray, "3"]] | None = None,
     settings: FitSettings | None = None,
     progress: Progress | None = None,
+    start: Similarity | None = None,
 ) -> Registration:
-    """Fit `model` to `scan`, begun from the landmarks that both have, or from `upright_pose`.
+    """Fit `model` to `scan`, begun from the landmarks that both have, or from a pose `start`.
 
     Matches are the nearest points of the scan to the model's vertices; those on the scan's open
     edge are dropped, and of all vertices the share `kept` with the closest matches is fitted.
-    `progress` is told of every stage. Raises `InputError` where the scan and the model do not meet.
+    `progress` is called with a line for every stage. Without landmarks,
+    `skinnet.pipeline.find_initial_pose` finds a start. Raises `InputError` without either, and
+    where the scan and the model do not meet.
     """
     settings = settings or FitSettings()
+    pose, alpha = _begin(model, scan, landmarks, settings, start)
     surface = Surface(scan)
-    if landmarks is None:
-        pose, alpha = upright_pose(model, scan, surface), np.zeros(1)
-    else:
-        pose, alpha = from_landmarks(model, landmarks, settings.map_weight)
     records = []
     for vertices, modes, prior in settings.stages:
         stage = Stage(model, surface, settings, alpha, vertices, modes, prior)
@@ -86,6 +85,23 @@ def register(
                 f"{len(record.rms)} steps, {record.rms[-1]:.3f} mm"
             )
     return _finished(model, surface, settings, pose, alpha, tuple(records))
+
+
+def _begin(
+    model: ShapeModel,
+    scan: Mesh,
+    landmarks: Mapping[str, Float[np.ndarray, "3"]] | None,
+    settings: FitSettings,
+    start: Similarity | None,
+) -> tuple[Similarity, Float[np.ndarray, "modes"]]:
+    if landmarks is not None:
+        return from_landmarks(model, landmarks, settings.map_weight)
+    if start is None:
+        raise InputError(
+            f"{scan.name} comes without landmarks and without a start; give one of the two. "
+            "skinnet.pipeline.find_initial_pose finds the pose of an upright face."
+        )
+    return start, np.zeros(1)
 
 
 def from_landmarks(

@@ -13,8 +13,8 @@ import torch
 from safetensors.torch import save_file
 
 from export.__main__ import main
-from skinnet.autoencoder import FORMAT, AutoencoderConfig, SkinAutoencoder
-from skinnet.weights import load_weights, read_weights, save_weights
+from skinnet.network.autoencoder import FORMAT, AutoencoderConfig, SkinAutoencoder
+from skinnet.network.weights import load_weights, read_weights, save_weights
 
 
 @pytest.fixture(scope="module")
@@ -49,7 +49,7 @@ def test_a_file_is_whole_and_says_what_it_is(exported: Path, name: str) -> None:
 
 
 def test_encoder_and_decoder_make_the_reconstruction_of_torch(exported: Path) -> None:
-    from skinnet.decoder import srgb
+    from skinnet.physics.decoder import srgb
 
     model = load_weights(exported.with_suffix(".safetensors"))
     photograph = torch.randint(0, 256, (2, 37, 53, 3), dtype=torch.uint8)

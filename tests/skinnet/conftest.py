@@ -1,7 +1,8 @@
-"""Photographs, and tiny ONNX files that keep the contract without any training."""
+"""Photographs, tiny ONNX files that keep the contract, and seven small people in a stack."""
 
 import json
 from collections.abc import Callable
+from functools import partial
 from pathlib import Path
 from typing import Any
 
@@ -10,6 +11,12 @@ import onnx
 import pytest
 from onnx import TensorProto, helper, numpy_helper
 from skimage import data
+
+from benchmarks.appearance import person
+from skinnet.appearance.colour import SkinColour
+from skinnet.appearance.spool import spool
+from skinnet.appearance.stack import SubjectStack
+from skinnet.appearance.subjects import SkinTexture
 
 LIGHTS = ("D", "A")
 MAPS = ("melanin", "hemoglobin", "shading", "specular", "mask")
@@ -156,3 +163,28 @@ def value_info(name: str) -> onnx.ValueInfoProto:
 
 def initializers(constants: dict[str, Any]) -> list[onnx.TensorProto]:
     return [numpy_helper.from_array(np.asarray(v), name) for name, v in constants.items()]
+
+
+COUNT, SIZE = 7, 20
+
+
+@pytest.fixture(scope="session")
+def colour() -> SkinColour:
+    """A small table, under a calibration that is not the identity."""
+    calibration = np.array([[0.9, 0.05, 0.0], [0.0, 1.1, -0.05], [0.02, 0.0, 0.95]])
+    return SkinColour(calibration=calibration, nodes=(24, 16), light="LED-B3", camera="D200")
+
+
+@pytest.fixture(scope="session")
+def persons() -> dict[str, Callable[[], SkinTexture]]:
+    return {f"person {seed}": partial(person, SIZE, seed) for seed in range(COUNT)}
+
+
+@pytest.fixture(scope="session")
+def stack(
+    tmp_path_factory: pytest.TempPathFactory,
+    persons: dict[str, Callable[[], SkinTexture]],
+    colour: SkinColour,
+) -> SubjectStack:
+    folder: Path = tmp_path_factory.mktemp("stack")
+    return spool(folder, persons, colour, "people")

@@ -9,13 +9,13 @@ from pipeline_scans import SIZE, pigments
 from torch.utils.data import default_collate
 
 from skinnet.appearance.colour import SkinColour
-from skinnet.appearance.mapsfile import save_maps
+from skinnet.appearance.maps_file import save_maps
 from skinnet.appearance.subjects import SkinTexture
+from skinnet.mesh.mesh_file import write_mesh
 from skinnet.shape.default import default_model
-from skinnet.shape.meshfile import write_mesh
 from train.batch import Batch
 from train.cli import main
-from train.twin.faces import Lots, TwinFaces
+from train.synthetic.faces import Lots, SyntheticFaces
 
 Fit = Callable[..., int]
 
@@ -60,7 +60,7 @@ def casts(tmp_path_factory: pytest.TempPathFactory) -> Path:
 @pytest.fixture(scope="session")
 def batch(casts: Path) -> Callable[[int], Batch]:
     """Makes a batch of that many pictures, 32 pixels wide, of one head."""
-    data = TwinFaces(size=32, heads=1, val_heads=1, geometry=str(casts))
+    data = SyntheticFaces(size=32, heads=1, val_heads=1, geometry=str(casts))
     data.setup("fit")
     lots = Lots(data.buffers["train"], "train", 100, seed=0)
     return lambda count: data.render(default_collate([lots[i] for i in range(count)]), "train")

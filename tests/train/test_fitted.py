@@ -9,11 +9,11 @@ from pipeline_scans import SIZE
 from torch.utils.data import default_collate
 
 from skinnet.appearance.hybrid import HybridModel
-from skinnet.appearance.mapsfile import load_maps
+from skinnet.appearance.maps_file import load_maps
 from skinnet.appearance.spool import spool
 from skinnet.appearance.subjects import SkinTexture
-from skinnet.decoder import srgb
 from skinnet.errors import InputError
+from skinnet.physics.decoder import srgb
 from train.fitted import FittedFaces, FittedLots, shrunk
 
 

@@ -8,7 +8,7 @@ import pytest
 import torch
 from torch import Tensor
 
-from skinnet.checkpoint import load_checkpoint, read_checkpoint
+from skinnet.network.checkpoint import load_checkpoint, read_checkpoint
 from train.callbacks import LastCheckpoint
 from train.guards import listed, not_finite
 from train.task import SkinTask, terms

@@ -12,9 +12,9 @@ from PIL import Image
 from skimage.data import astronaut
 from torch.utils.data import DataLoader
 
-from skinnet.checkpoint import read_checkpoint
 from skinnet.errors import InputError
-from skinnet.images import srgb_to_linear
+from skinnet.images.photograph import srgb_to_linear
+from skinnet.network.checkpoint import read_checkpoint
 from train.callbacks import LastCheckpoint, PictureGrid
 from train.cli import main
 from train.portraits import (
@@ -26,7 +26,7 @@ from train.portraits import (
     find_crops,
     varied,
 )
-from train.twin.faces import Drawn, TwinFaces
+from train.synthetic.faces import Drawn, SyntheticFaces
 
 
 def test_a_face_is_found_cropped_and_masked(tmp_path: Path) -> None:
@@ -165,7 +165,7 @@ def test_a_brighter_photograph_clips_and_keeps_its_mask() -> None:
 
 def test_sizes_that_differ_are_refused(tmp_path: Path) -> None:
     with pytest.raises(InputError, match="cut to 192 pixels and the twin's pictures have 160"):
-        Portraits(str(tmp_path), size=192, twin=TwinFaces(size=160)).setup("fit")
+        Portraits(str(tmp_path), size=192, twin=SyntheticFaces(size=160)).setup("fit")
 
 
 @pytest.mark.filterwarnings("ignore:.isinstance.treespec")

@@ -6,7 +6,7 @@ import torch
 from lightning import Callback, LightningModule, Trainer
 from torch import Tensor, distributed, nn
 
-from train.twin.faces import Lots
+from train.synthetic.faces import Lots
 
 
 class _Sum(torch.autograd.Function):

@@ -7,8 +7,8 @@ import pytest
 import torch
 
 from skinnet.appearance.colour import SkinColour, outside
-from skinnet.camera import SpectralCamera
-from skinnet.reflectance import SkinReflectance
+from skinnet.physics.camera import SpectralCamera
+from skinnet.physics.reflectance import SkinReflectance
 
 D = torch.float64
 

@@ -10,8 +10,8 @@ import pytest
 from pipeline_scans import FAST, write_scan
 
 from skinnet.cli import main
-from skinnet.pipeline.shapefile import load_fit
-from skinnet.shape.meshfile import read_mesh
+from skinnet.mesh.mesh_file import read_mesh
+from skinnet.pipeline.fit_file import load_fit
 
 Refused = Callable[..., str]
 

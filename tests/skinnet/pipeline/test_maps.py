@@ -10,9 +10,9 @@ import pytest
 from PIL import Image
 from pipeline_scans import FAST, SIZE, pigments
 
-from skinnet.appearance.mapsfile import load_maps
+from skinnet.appearance.maps_file import load_maps
 from skinnet.cli import main
-from skinnet.shape.meshfile import read_mesh
+from skinnet.mesh.mesh_file import read_mesh
 
 Refused = Callable[..., str]
 

@@ -12,7 +12,7 @@ from pipeline_scans import SIZE
 
 from skinnet.appearance.hybrid import HybridModel
 from skinnet.appearance.linear import LinearModel
-from skinnet.appearance.mapsfile import load_maps, save_maps
+from skinnet.appearance.maps_file import load_maps, save_maps
 from skinnet.cli import main
 
 Refused = Callable[..., str]
@@ -32,7 +32,7 @@ def test_models_measures_and_pictures_are_there(model: Path) -> None:
 
 def test_a_joint_model_is_built_where_the_shape_model_is_named(maps: Path, tmp_path: Path) -> None:
     from skinnet.shape.default import default_model
-    from skinnet.shape.modelfile import save_shape_model
+    from skinnet.shape.model_formats import save_shape_model
 
     save_shape_model(tmp_path / "shape.npz", default_model())
     command = ["build-model", str(maps), "-o", str(tmp_path / "out"), "--model.samples=3"]

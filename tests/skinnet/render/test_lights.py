@@ -5,8 +5,8 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+from skinnet.mesh.normals import unit
 from skinnet.render.lights import SphericalHarmonics, harmonics
-from skinnet.shape.normals import unit
 
 
 def sphere(count: int = 200_000) -> np.ndarray:

@@ -5,13 +5,13 @@ import pytest
 from trimesh.creation import icosphere
 
 from skinnet.errors import InputError
-from skinnet.images import linear_to_srgb, to_uint8
+from skinnet.images.photograph import linear_to_srgb, to_uint8
+from skinnet.mesh.mesh import Mesh
+from skinnet.mesh.normals import unit
 from skinnet.render.camera import Orthographic, front, orbit
 from skinnet.render.lights import Directional, SphericalHarmonics
 from skinnet.render.shade import EXPONENT, relight, render
 from skinnet.render.visibility import geometry
-from skinnet.shape.mesh import Mesh
-from skinnet.shape.normals import unit
 
 _SPHERE = icosphere(subdivisions=4)
 BALL = Mesh(np.array(_SPHERE.vertices), np.array(_SPHERE.faces), name="ball")

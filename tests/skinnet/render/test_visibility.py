@@ -5,11 +5,11 @@ import pytest
 from trimesh.creation import box, icosphere
 
 from skinnet.errors import InputError
+from skinnet.mesh.mesh import Mesh
+from skinnet.mesh.normals import unit
 from skinnet.render.camera import Orthographic, Perspective, orbit
 from skinnet.render.scene import Scene
 from skinnet.render.visibility import geometry
-from skinnet.shape.mesh import Mesh
-from skinnet.shape.normals import unit
 
 
 def square(half: float, z: float = 0.0) -> Mesh:

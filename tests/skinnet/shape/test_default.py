@@ -5,11 +5,11 @@ import pytest
 import torch
 
 from skinnet.errors import InputError
+from skinnet.mesh.orientation import face_components, inside_out
+from skinnet.mesh.topology import boundary_loops
 from skinnet.shape.default import MODES, default_model, procedural_model
 from skinnet.shape.landmarks import IBUG
-from skinnet.shape.orientation import face_components, inside_out
 from skinnet.shape.procedural import CHART, IDENTITY, relief
-from skinnet.shape.topology import boundary_loops
 
 
 def mirrored() -> np.ndarray:

@@ -8,6 +8,8 @@ import pytest
 from small_meshes import LANDMARKS, dome, small_model
 
 from skinnet.errors import InputError
+from skinnet.mesh.mesh import Mesh
+from skinnet.mesh.mesh_file import read_mesh
 from skinnet.shape.landmarks import (
     IBUG,
     check_landmarks,
@@ -16,8 +18,6 @@ from skinnet.shape.landmarks import (
     read_landmarks,
     write_landmarks,
 )
-from skinnet.shape.mesh import Mesh
-from skinnet.shape.meshfile import read_mesh
 
 PP = """<!DOCTYPE PickedPoints>
 <PickedPoints>

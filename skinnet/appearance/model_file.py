@@ -1,0 +1,132 @@
+"""Files of appearance models: .npz, never pickled, whole or not at all."""
+
+import json
+import zipfile
+import zlib
+from collections.abc import Mapping
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from jaxtyping import Bool
+from numpy.typing import NDArray
+
+from skinnet._version import __version__
+from skinnet.appearance.colour import SkinColour
+from skinnet.appearance.principal import PrincipalComponents
+from skinnet.errors import InputError
+from skinnet.files import atomic
+
+FORMAT = 1
+"""Version of the files' contents."""
+
+BROKEN = (
+    *(OSError, EOFError, KeyError, TypeError, ValueError, AttributeError),
+    *(zipfile.BadZipFile, zlib.error, NotImplementedError, MemoryError),
+)
+"""What NumPy, zipfile and JSON raise on damaged files."""
+
+STATISTICS = ("mean", "basis", "variances", "scales")
+"""Arrays of a `PrincipalComponents`."""
+
+Array = NDArray[Any]
+
+
+def save(
+    path: Path,
+    kind: str,
+    statistics: PrincipalComponents,
+    mask: Bool[np.ndarray, "size size"],
+    colour: SkinColour,
+) -> None:
+    """Write a model of the given kind, named after its class.
+
+    Raises `InputError` if the path does not end in .npz or cannot be written.
+    """
+    header = {
+        "colour": colour.record(),
+        "total": statistics.total,
+        "subjects": statistics.subjects,
+    }
+    arrays = {name: getattr(statistics, name) for name in STATISTICS}
+    write(path, kind, header, arrays | {"mask": mask})
+
+
+def load(
+    path: Path, kind: str
+) -> tuple[PrincipalComponents, Bool[np.ndarray, "size size"], SkinColour]:
+    """Read a model of the given kind. Raises `InputError` for anything else."""
+    header, arrays = read(path, kind, (*STATISTICS, "mask"))
+    mask = arrays.pop("mask")
+    try:
+        colour = SkinColour.from_record(header["colour"])
+    except BROKEN as error:
+        raise damaged(path) from error
+    statistics = as_statistics(path, header, arrays)
+    if mask.dtype != bool or mask.shape != (len(mask),) * 2 or mask.sum() != len(statistics.mean.T):
+        raise damaged(path)
+    return statistics, mask, colour
+
+
+def as_statistics(
+    path: Path, header: Mapping[str, Any], arrays: Mapping[str, Array]
+) -> PrincipalComponents:
+    """The components in a file. Raises `InputError` where its parts do not fit together."""
+    mean, basis, variances, scales = (arrays[name] for name in STATISTICS)
+    if basis.ndim != 3 or basis.shape != (*variances.shape, *scales.shape, basis.shape[2]):
+        raise damaged(path)
+    if mean.shape != basis.shape[1:] or not mean.dtype == basis.dtype == np.float32:
+        raise damaged(path)
+    try:
+        if not all(np.isfinite(array).all() for array in (mean, variances, scales)):
+            raise damaged(path)
+        total, subjects = float(header["total"]), int(header["subjects"])
+        return PrincipalComponents(mean, basis, variances, scales, total, subjects)
+    except BROKEN as error:
+        raise damaged(path) from error
+
+
+def write(path: Path, kind: str, header: dict[str, Any], arrays: dict[str, Any]) -> None:
+    """Write arrays under a header that says what they are."""
+    if path.suffix != ".npz":
+        raise InputError(f"{path} does not end in .npz, as models' files do.")
+    header = {"kind": kind, "format": FORMAT, "skinnet": __version__} | header
+    try:
+        with atomic(path) as part:
+            np.savez(part, header=np.array(json.dumps(header)), **arrays)
+    except OSError as error:
+        raise InputError(f"{path} cannot be written ({error.strerror}); check the path.") from error
+
+
+def read(path: Path, kind: str, names: tuple[str, ...]) -> tuple[dict[str, Any], dict[str, Array]]:
+    """Header and arrays of a file of that kind; raises `InputError` for anything else."""
+    if not path.is_file():
+        raise InputError(f"There is no file {path}; check the path.")
+    try:
+        # Opened here, since NumPy leaves a file open that turns out to be no archive.
+        with path.open("rb") as opened, np.load(opened, allow_pickle=False) as file:
+            header = json.loads(str(file["header"]))
+            _check(path, kind, header)
+            return header, {name: file[name] for name in names}
+    except InputError:
+        raise
+    except BROKEN as error:
+        raise damaged(path) from error
+
+
+def damaged(path: Path) -> InputError:
+    """The sentence for a file that is not what it should be."""
+    return InputError(
+        f"{path} is not a whole model of skinnet's (damaged, cut short, or something else); make "
+        "it again."
+    )
+
+
+def _check(path: Path, kind: str, header: dict[str, Any]) -> None:
+    if header["format"] != FORMAT:
+        raise InputError(
+            f"{path} has format {header['format']}, and this skinnet reads format {FORMAT}; make "
+            "it again, or install the skinnet that made it."
+        )
+    if header["kind"] != kind:
+        raise InputError(f"{path} is a {header['kind']}, and a {kind} is wanted.")

@@ -1,0 +1,62 @@
+"""The picture that colours a mesh, its rows as they lie in the file."""
+
+import warnings
+from pathlib import Path
+
+import numpy as np
+from jaxtyping import UInt8
+from PIL import Image
+
+from skinnet.errors import InputError
+from skinnet.files import BROKEN
+from skinnet.images.decode import to_srgb
+from skinnet.images.photograph import FORMATS, MAX_PIXELS, SUFFIXES
+
+Texture = UInt8[np.ndarray, "_ _ 3"]
+
+
+def read_texture(path: Path) -> Texture:
+    """A picture as uint8 sRGB, as it lies in the file.
+
+    Texture coordinates refer to the rows and columns that are stored, so an EXIF orientation is not
+    applied, as it is to a photograph; colour profiles are, and transparency is laid on white.
+    Raises `InputError` if the picture is missing, damaged, or larger than `MAX_PIXELS`.
+    """
+    Image.init()
+    try:
+        with warnings.catch_warnings():
+            warnings.simplefilter("ignore")
+            image = Image.open(path, formats=[known for known in FORMATS if known in Image.OPEN])
+    except FileNotFoundError:
+        raise InputError(f"There is no texture {path}; check the path.") from None
+    except (Image.DecompressionBombError, *BROKEN) as error:
+        raise InputError(f"{path} is not a picture that can be read as a texture.") from error
+    with image:
+        return decode_texture(image, str(path))
+
+
+def decode_texture(image: Image.Image, name: str) -> Texture:
+    """An open image as uint8 sRGB; `name` stands for it in errors."""
+    width, height = image.size
+    if width * height > MAX_PIXELS:
+        raise InputError(
+            f"{name} is {width} x {height} pixels, more than {MAX_PIXELS:,}; scale it down first."
+        )
+    try:
+        with warnings.catch_warnings():
+            warnings.simplefilter("ignore")
+            image.load()
+            return np.array(to_srgb(image, name))
+    except InputError:
+        raise
+    except (Image.DecompressionBombError, *BROKEN) as error:
+        raise InputError(f"{name} is damaged or cut short ({error}); copy it again.") from error
+
+
+def picture_beside(path: Path) -> Path | None:
+    """The picture in a mesh's folder that bears its name, else the only one there, else None."""
+    pictures = sorted(p for p in path.absolute().parent.iterdir() if p.suffix.lower() in SUFFIXES)
+    named = [picture for picture in pictures if picture.stem == path.stem]
+    if len(named) == 1:
+        return named[0]
+    return pictures[0] if len(pictures) == 1 else None

@@ -1,0 +1,184 @@
+"""Light, camera and colour pipeline: from spectra to linear sRGB."""
+
+from functools import cache
+
+import torch
+from jaxtyping import Float
+from torch import Tensor, nn
+
+from skinnet.physics.capture import Capture
+from skinnet.physics.daylight import daylight
+from skinnet.physics.parameters import register_constant
+from skinnet.physics.spectra import cameras, observer, table
+
+LIGHTS = ("D", *table("illuminants"))
+"""Names of the lights in a mixture: daylight of the given temperature, then CIE illuminants."""
+
+COMPONENTS = 6
+"""Components of the camera basis; they explain 92 % of the variance of 52 cameras."""
+
+
+class SpectralCamera(nn.Module):
+    """A camera that balances its white: spectra [..., 33] to linear sRGB [..., 3].
+
+    raw_C = sum_j e_j S_jC r_j (equation 4), wb = raw / white, XYZ = M(S) wb, linear = XYZ -> sRGB.
+
+    Lights are convex mixtures of `LIGHTS`, of unit sum. Sensitivities are the mean plus principal
+    components of 52 measured cameras of unit sum; `explained` [components] is the share of variance
+    of each. `mean` [33, 3], `basis` [components, 33, 3] (one standard deviation each) and `lights`
+    [8, 33] may be replaced, and are trainable if an `nn.Parameter` is handed in.
+    """
+
+    mean: Tensor
+    basis: Tensor
+    lights: Tensor
+    explained: Tensor
+    observer: Tensor
+    daylight: Tensor
+
+    def __init__(
+        self,
+        components: int = COMPONENTS,
+        mean: Float[Tensor, "wavelength 3"] | None = None,
+        basis: Float[Tensor, "components wavelength 3"] | None = None,
+        lights: Float[Tensor, "lamps wavelength"] | None = None,
+        dtype: torch.dtype | None = None,
+    ):
+        super().__init__()
+        dtype = dtype or torch.get_default_dtype()
+        measured_mean, measured_basis, explained = camera_basis()
+        constants = {
+            "mean": measured_mean if mean is None else mean,
+            "basis": measured_basis[:components] if basis is None else basis,
+            "lights": _unit_sum(torch.stack(list(table("illuminants").values())))
+            if lights is None
+            else lights,
+        }
+        for name, value in constants.items():
+            register_constant(self, name, value, dtype)
+        tables = {
+            "explained": explained[:components],
+            "observer": observer(),
+            "daylight": torch.stack(list(table("daylight").values())),
+        }
+        for name, value in tables.items():
+            register_constant(self, name, value, dtype, persistent=False)
+
+    def forward(
+        self, reflectance: Float[Tensor, "*shape wavelength"], capture: Capture | None = None
+    ) -> Float[Tensor, "*shape 3"]:
+        """Linear sRGB of spectra whose leading axes are those of `capture`, then any others.
+
+        Without a capture: D65, the mean camera, a perfect white balance.
+        """
+        return apply_matrix(reflectance, self.matrix(capture or self.standard()))
+
+    def standard(self, shape: tuple[int, ...] = ()) -> Capture:
+        """D65, the mean camera and a perfect white balance, for photographs of that shape."""
+        return Capture.standard(len(self.lights) + 1, len(self.basis), shape, self.mean)
+
+    def matrix(self, capture: Capture) -> Float[Tensor, "*batch wavelength 3"]:
+        """The map from a spectrum to linear sRGB, which is linear for a given light and camera."""
+        sensitivity = self.sensitivity(capture.camera)
+        power = self.light(capture.light, capture.temperature)
+        red, blue = capture.white_balance.unbind(-1)
+        gain = torch.stack([red, torch.zeros_like(red), blue], -1).exp()
+        return spectrum_to_srgb(power, sensitivity, self.observer, gain)
+
+    def light(
+        self, weights: Float[Tensor, "*batch lights"], temperature: Float[Tensor, "*batch"]
+    ) -> Float[Tensor, "*batch wavelength"]:
+        """Relative power of a mixture, of unit sum."""
+        day = daylight(temperature, self.daylight)
+        return _unit_sum(weights[..., :1] * day + weights[..., 1:] @ self.lights)
+
+    def sensitivity(
+        self, coefficients: Float[Tensor, "*batch components"]
+    ) -> Float[Tensor, "*batch wavelength 3"]:
+        """Spectral sensitivity of the camera with these coefficients, each channel of unit sum."""
+        return self.mean + torch.einsum("...c,cwk->...wk", coefficients, self.basis)
+
+    def white(self, capture: Capture) -> Float[Tensor, "*batch 3"]:
+        """Linear sRGB of a perfect diffuser: (1, 1, 1) but for the error of the white balance."""
+        return self.matrix(capture).sum(-2)
+
+
+def spectrum_to_srgb(
+    light: Float[Tensor, "*#batch wavelength"],
+    sensitivity: Float[Tensor, "*#batch wavelength 3"],
+    observer: Float[Tensor, "wavelength 3"],
+    gain: Float[Tensor, "*#batch 3"] | None = None,
+) -> Float[Tensor, "*batch wavelength 3"]:
+    """Matrix from a reflectance spectrum to linear sRGB under any light and camera.
+
+    `gain` multiplies the balanced channels; None is a perfect white balance. M is the least-squares
+    map from the sensitivities, each divided by its raw white as the channels it is applied to are,
+    to the observer with its rows scaled so that white goes to D65 (rows
+    that sum to one, as a follow-up paper prints, send it to (1.205, .948, .909)). The rows of the
+    whole map from balanced channels to linear sRGB then sum to one; dividing by that sum changes
+    nothing in exact arithmetic and keeps neutrals neutral in float32.
+    """
+    white = (light[..., None] * sensitivity).sum(-2, keepdim=True)
+    sensitivity = sensitivity / white
+    to_xyz = inverse3(sensitivity.mT @ sensitivity) @ (sensitivity.mT @ observer)  # M transposed
+    balanced = light[..., None] * sensitivity
+    if gain is not None:
+        balanced = balanced * gain[..., None, :]
+    srgb = srgb_to_xyz().to(to_xyz)
+    to_xyz = to_xyz * (srgb.sum(-1) / to_xyz.sum(-2, keepdim=True))
+    to_srgb = to_xyz @ inverse3(srgb).mT
+    return balanced @ (to_srgb / to_srgb.sum(-2, keepdim=True))
+
+
+def apply_matrix(
+    spectra: Float[Tensor, "*shape wavelength"], matrix: Float[Tensor, "*batch wavelength 3"]
+) -> Float[Tensor, "*shape 3"]:
+    """Spectra [*batch, ..., 33] times one matrix for each element of the batch."""
+    batch = matrix.ndim - 2
+    flat = spectra.flatten(batch, -2) if spectra.ndim - 1 > batch else spectra[..., None, :]
+    product = flat @ matrix
+    return product.reshape(*product.shape[:-2], *spectra.shape[batch:-1], 3)
+
+
+def inverse3(matrix: Float[Tensor, "*batch 3 3"]) -> Float[Tensor, "*batch 3 3"]:
+    """Inverse of 3 x 3 matrices by cofactors; ONNX has no operator for it."""
+    a, b, c = matrix.unbind(-1)
+    rows = torch.stack([_cross(b, c), _cross(c, a), _cross(a, b)], -2)
+    return rows / (a * rows[..., 0, :]).sum(-1)[..., None, None]
+
+
+def _cross(a: Float[Tensor, "*batch 3"], b: Float[Tensor, "*batch 3"]) -> Float[Tensor, "*batch 3"]:
+    return a.roll(-1, -1) * b.roll(-2, -1) - a.roll(-2, -1) * b.roll(-1, -1)
+
+
+def srgb_to_xyz() -> Float[Tensor, "3 3"]:
+    """Linear sRGB to XYZ from the primaries and the D65 white of IEC 61966-2-1."""
+    primaries = torch.tensor([[0.64, 0.33], [0.30, 0.60], [0.15, 0.06]], dtype=torch.float64)
+    white = torch.tensor([0.3127, 0.3290], dtype=torch.float64)
+    xyz = _chromaticity_to_xyz(primaries).mT
+    return xyz * (inverse3(xyz) @ _chromaticity_to_xyz(white))
+
+
+def _chromaticity_to_xyz(xy: Float[Tensor, "*batch 2"]) -> Float[Tensor, "*batch 3"]:
+    x, y = xy.unbind(-1)
+    return torch.stack([x / y, torch.ones_like(x), (1 - x - y) / y], -1)
+
+
+@cache
+def camera_basis() -> tuple[Tensor, Tensor, Tensor]:
+    """Mean [33, 3], components [51, 33, 3] and explained variance [51] of the measured cameras.
+
+    A joint principal component analysis of the three channels, each of unit sum; a component is
+    scaled to one standard deviation over the 52 cameras.
+    """
+    curves = torch.stack(list(cameras().values()))
+    mean = curves.mean(0)
+    _, values, vectors = torch.linalg.svd((curves - mean).flatten(1), full_matrices=False)
+    kept = len(curves) - 1
+    deviations = values[:kept] / kept**0.5
+    basis = deviations[:, None, None] * vectors[:kept].unflatten(1, mean.shape)
+    return mean, basis, values[:kept] ** 2 / (values**2).sum()
+
+
+def _unit_sum(spectra: Float[Tensor, "*batch wavelength"]) -> Float[Tensor, "*batch wavelength"]:
+    return spectra / spectra.sum(-1, keepdim=True)

@@ -1,0 +1,147 @@
+"""The skin's optical constants, each with its unit, range and source, and the four presets."""
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, field, fields, replace
+from types import MappingProxyType
+from typing import Any
+
+import torch
+from torch import Tensor
+
+from skinnet.errors import InputError
+from skinnet.physics.kubelka_munk import kubelka_munk, kubelka_munk_printed
+from skinnet.physics.spectra import WAVELENGTHS, table
+
+Constant = float | int | Tensor
+
+
+def _constant(value: Any, unit: str, low: float, high: float, source: str) -> Any:
+    note = {"unit": unit, "range": (low, high), "source": source}
+    return field(default=value, metadata=note)
+
+
+def _spectrum(name: str, column: str, unit: str, source: str) -> Any:
+    note = {"unit": unit, "range": (0.0, 1e7), "source": source}
+    return field(default_factory=lambda: table(name)[column], metadata=note)
+
+
+@dataclass(frozen=True, eq=False)
+class SkinOptics:
+    """Constants of the two-layer skin model; the defaults are the `calibrated` preset.
+
+    Each field takes a float, a tensor, or an `nn.Parameter`, which makes it trainable in whatever
+    module is built on it. `SkinOptics.preset("paper", d_pd=0.1)` changes one of them. Field
+    metadata holds `unit`, `range` and `source`; a value outside its range is an `InputError`,
+    which is a `ValueError`.
+
+    Source: Alotaibi & Smith 2017, Tables 1 to 3, where nothing else is named.
+    """
+
+    c_eum: Constant = _constant(80.0, "g/L", 0.0, 1e3, "Thody et al. 1991")
+    c_phm: Constant = _constant(12.0, "g/L", 0.0, 1e3, "Thody et al. 1991")
+    f_eum: Constant = _constant(0.61, "fraction", 0.0, 1.0, "Hennessy et al. 2005")
+    c_hem: Constant = _constant(150.0, "g/L", 0.0, 1e3, "Flewelling 1981")
+    g: Constant = _constant(64500.0, "g/mol", 1e4, 1e5, "Jacques 1998")
+    f_oxy: Constant = _constant(0.75, "fraction", 0.0, 1.0, "Mitsou et al. 2014")
+    d_epd: Constant = _constant(0.021, "cm", 0.0, 1.0, "Anderson & Parrish 1981")
+    d_pd: Constant = _constant(0.2, "cm", 1e-6, 10.0, "Anderson & Parrish 1981")
+    d_base: Constant | None = _constant(
+        None, "cm", 0.0, 1.0, "path of the epidermis' baseline absorption; None: d_epd"
+    )
+    r_vessel: Constant = _constant(
+        20e-4,
+        "cm",
+        0.0,
+        0.1,
+        "pigment packaging (Duysens 1956), chosen on the NIST spectra; 0: off",
+    )
+    blood_epd: Constant = _constant(
+        0.0, "fraction of f_blood", 0.0, 1.0, "blood in the epidermis; only the authors' release"
+    )
+    base_floor: Constant = _constant(0.244, "cm^-1", 0.0, 1e3, "Jacques 1998")
+    base_scale: Constant = _constant(85.3, "cm^-1", 0.0, 1e5, "Jacques 1998")
+    mie: Constant = _constant(2e5, "cm^-1 nm^1.5", 0.0, 1e9, "Jacques 1996")
+    rayleigh: Constant = _constant(2e12, "cm^-1 nm^4", 0.0, 1e16, "Jacques 1996")
+    eps_eum: Tensor = _spectrum("melanin", "eumelanin", "L g^-1 cm^-1", "OMLC, Sarna & Swartz")
+    eps_phm: Tensor = _spectrum("melanin", "pheomelanin", "L g^-1 cm^-1", "OMLC, Sarna & Swartz")
+    e_oxy: Tensor = _spectrum("hemoglobin", "oxy", "cm^-1/(mol/L)", "Prahl 1999")
+    e_deoxy: Tensor = _spectrum("hemoglobin", "deoxy", "cm^-1/(mol/L)", "Prahl 1999")
+    dermis: Callable[[Tensor, Tensor, Tensor], Tensor] = kubelka_munk
+
+    def __post_init__(self) -> None:
+        for item in fields(self):
+            if "range" in item.metadata and (value := getattr(self, item.name)) is not None:
+                _check_range(item.name, _as_tensor(item.name, value), **item.metadata)
+        for name in _SPECTRA:
+            if (shape := tuple(getattr(self, name).shape)) != tuple(WAVELENGTHS.shape):
+                raise InputError(f"{name} has one value for each of 33 bands; got shape {shape}.")
+
+    @staticmethod
+    def preset(name: str, **constants: Any) -> "SkinOptics":
+        """One of `PRESETS` by name, with some constants replaced.
+
+        Raises `ValueError` for an unknown preset or constant, or a value out of its range.
+        """
+        if name not in PRESETS:
+            raise InputError(f"There is no preset {name!r}; the presets are {', '.join(PRESETS)}.")
+        known = {item.name for item in fields(SkinOptics)}
+        if unknown := set(constants) - known:
+            raise InputError(
+                f"SkinOptics has no constant {', '.join(sorted(unknown))}; "
+                f"it has {', '.join(sorted(known))}."
+            )
+        return replace(PRESETS[name], **constants)
+
+
+_SPECTRA = ("eps_eum", "eps_phm", "e_oxy", "e_deoxy")
+
+
+def _as_tensor(name: str, value: object) -> Tensor:
+    if isinstance(value, Tensor | float | int):
+        return torch.as_tensor(value).detach()
+    raise InputError(f"{name} is a number or a tensor; got {value!r}.")
+
+
+def _check_range(
+    name: str, value: Tensor, unit: str, range: tuple[float, float], source: str
+) -> None:
+    low, high = range
+    outside = value[~((value >= low) & (value <= high))]
+    if outside.numel():
+        raise InputError(
+            f"{name} is in {unit} and lies in [{low:g}, {high:g}]; got {outside.flatten()[0]:g}. "
+            f"Source of its default: {source}."
+        )
+
+
+def _printed_extinction(scale: float, power: float) -> Tensor:
+    return scale * WAVELENGTHS**power
+
+
+PRESETS: Mapping[str, SkinOptics] = MappingProxyType(
+    {
+        "calibrated": SkinOptics(),
+        "paper": SkinOptics(r_vessel=0.0),
+        "authors": SkinOptics(
+            d_epd=0.02,
+            d_pd=0.3,
+            g=66500.0,
+            base_floor=0.0244,
+            base_scale=8.53,
+            d_base=1.0,
+            blood_epd=0.25,
+            r_vessel=0.0,
+        ),
+        "printed": SkinOptics(
+            eps_eum=_printed_extinction(6.6e11, -3.33),
+            eps_phm=_printed_extinction(2.9e10, -4.75),
+            d_base=1.0,
+            r_vessel=0.0,
+            dermis=kubelka_munk_printed,
+        ),
+    }
+)
+"""`calibrated` (default): `paper` with blood in vessels of 20 um radius.
+`paper`: the paper's Tables 1 to 3 in consistent units.
+`authors`: the constants of the authors' later MATLAB release (github.com/ssma502/SkinModel).
+`printed`: the paper's text, literally; it makes every skin black and is kept for the record."""

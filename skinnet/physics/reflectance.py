@@ -1,0 +1,125 @@
+"""Spectral reflectance of skin from two pigment fractions."""
+
+from dataclasses import fields
+
+import torch
+from jaxtyping import Float
+from torch import Tensor, nn
+
+from skinnet.physics.optics import SkinOptics
+from skinnet.physics.parameters import check_fraction, register_constant
+from skinnet.physics.spectra import WAVELENGTHS
+
+
+class SkinReflectance(nn.Module):
+    """Two-layer skin: a Lambert-Beer epidermis over a Kubelka-Munk dermis.
+
+    R_total = T_epidermis(f_mel)^2 R_dermis(f_blood) at the 33 bands of `WAVELENGTHS`
+    (Alotaibi & Smith 2017, sections 3.2 to 3.4).
+
+    `optics` is a `SkinOptics` or a preset's name. A constant that is an `nn.Parameter` there is a
+    parameter here; the others are buffers. Departures from the print, each with its reason: the
+    baseline absorption of the epidermis is multiplied by its thickness, as a dimensionless exponent
+    must be; the denominator of R_dermis is Kubelka-Munk's; blood is packed into vessels,
+    mu -> mu (1 - exp(-2 mu r)) / (2 mu r), without which two parameters do not explain skin.
+    """
+
+    wavelengths: Tensor
+    c_eum: Tensor
+    c_phm: Tensor
+    f_eum: Tensor
+    c_hem: Tensor
+    g: Tensor
+    f_oxy: Tensor
+    d_epd: Tensor
+    d_pd: Tensor
+    d_base: Tensor | None
+    r_vessel: Tensor
+    blood_epd: Tensor
+    base_floor: Tensor
+    base_scale: Tensor
+    mie: Tensor
+    rayleigh: Tensor
+    eps_eum: Tensor
+    eps_phm: Tensor
+    e_oxy: Tensor
+    e_deoxy: Tensor
+
+    def __init__(self, optics: SkinOptics | str = "calibrated", dtype: torch.dtype | None = None):
+        super().__init__()
+        optics = SkinOptics.preset(optics) if isinstance(optics, str) else optics
+        dtype = dtype or torch.get_default_dtype()
+        self.dermis = optics.dermis
+        register_constant(self, "wavelengths", WAVELENGTHS, dtype, persistent=False)
+        for item in fields(optics):
+            if "range" in item.metadata:
+                register_constant(self, item.name, getattr(optics, item.name), dtype)
+
+    def forward(
+        self, f_mel: Float[Tensor, "*#batch"] | float, f_blood: Float[Tensor, "*#batch"] | float
+    ) -> Float[Tensor, "*batch wavelength"]:
+        """Reflectance [..., 33] of melanosome and blood volume fractions [...], each in [0, 1].
+
+        Raises `ValueError` for a fraction that is not a number, negative, or above one.
+        """
+        f_mel = check_fraction("f_mel", f_mel, like=self.wavelengths)
+        f_blood = check_fraction("f_blood", f_blood, like=self.wavelengths)
+        return self.bands(f_mel, f_blood)
+
+    def bands(
+        self, f_mel: Float[Tensor, "*#batch"], f_blood: Float[Tensor, "*#batch"]
+    ) -> Float[Tensor, "*batch wavelength"]:
+        """`forward` without its checks, for graphs that are trained or exported."""
+        f_mel, f_blood = f_mel[..., None], f_blood[..., None]
+        return self.epidermis(f_mel, f_blood) ** 2 * self.dermis_reflectance(f_blood)
+
+    def epidermis(
+        self, f_mel: Float[Tensor, "*#batch 1"], f_blood: Float[Tensor, "*#batch 1"]
+    ) -> Float[Tensor, "*batch wavelength"]:
+        """Transmittance of the epidermis in one direction (equation 2).
+
+        The third absorber, blood, is there in the authors' release only, which weights each
+        hemoglobin by its share of the total twice.
+        """
+        d_base = self.d_epd if self.d_base is None else self.d_base
+        f_hem = self.blood_epd * f_blood
+        twice = self.f_oxy**2 * self._mu(self.e_oxy) + (1 - self.f_oxy) ** 2 * self._mu(
+            self.e_deoxy
+        )
+        melanin = f_mel * self.d_epd * self.mu_mel
+        return torch.exp(-melanin - d_base * (f_hem * twice + (1 - f_mel - f_hem) * self.mu_base))
+
+    def dermis_reflectance(
+        self, f_blood: Float[Tensor, "*batch 1"]
+    ) -> Float[Tensor, "*batch wavelength"]:
+        """Reflectance of the papillary dermis over a black substrate (section 3.3)."""
+        k = f_blood * self.mu_blood + (1 - f_blood) * self.mu_base
+        s = self.mie * self.wavelengths**-1.5 + self.rayleigh * self.wavelengths**-4.0
+        return self.dermis(k, s, self.d_pd)
+
+    @property
+    def mu_mel(self) -> Float[Tensor, "wavelength"]:
+        """Absorption of a melanosome's interior, cm^-1."""
+        eumelanin = self.f_eum * self.eps_eum * self.c_eum
+        return eumelanin + (1 - self.f_eum) * self.eps_phm * self.c_phm
+
+    @property
+    def mu_base(self) -> Float[Tensor, "wavelength"]:
+        """Absorption of skin without pigment, cm^-1 (Jacques 1998)."""
+        return self.base_floor + self.base_scale * torch.exp(-(self.wavelengths - 154) / 66.2)
+
+    @property
+    def mu_blood(self) -> Float[Tensor, "wavelength"]:
+        """Absorption of whole blood in vessels of radius `r_vessel`, cm^-1."""
+        mu = self.f_oxy * self._mu(self.e_oxy) + (1 - self.f_oxy) * self._mu(self.e_deoxy)
+        return mu * packing(2 * mu * self.r_vessel)
+
+    def _mu(self, extinction: Float[Tensor, "wavelength"]) -> Float[Tensor, "wavelength"]:
+        return 2.303 * extinction * self.c_hem / self.g
+
+
+def packing(x: Float[Tensor, "*shape"]) -> Float[Tensor, "*shape"]:
+    """(1 - exp(-x)) / x for x >= 0, smooth at zero, where it is 1 (van Veen et al. 2002)."""
+    small = x < 1e-4
+    safe = torch.where(small, torch.ones_like(x), x)
+    return torch.where(small, 1 - x / 2 + x**2 / 6, -torch.expm1(-safe) / safe)

@@ -1,0 +1,47 @@
+"""The file of a fitted shape: NAME_shape.npz."""
+
+import json
+from dataclasses import asdict
+from pathlib import Path
+
+import numpy as np
+
+from skinnet.appearance.model_file import BROKEN
+from skinnet.errors import InputError
+from skinnet.files import atomic
+from skinnet.shape.icp import StageRecord
+from skinnet.shape.registration import Registration
+from skinnet.shape.similarity import Similarity
+
+_ARRAYS = ("alpha", "vertices", "distances", "kept")
+
+
+def save_fit(path: Path, found: Registration) -> None:
+    """Write a fit as .npz of plain arrays, whole or not at all."""
+    stages = json.dumps([asdict(stage) for stage in found.record])
+    arrays = {name: getattr(found, name) for name in _ARRAYS}
+    with atomic(path) as part:
+        np.savez(
+            part,
+            rotation=found.pose.rotation,
+            scale=np.float64(found.pose.scale),
+            translation=found.pose.translation,
+            millimetres=np.float64(found.millimetres),
+            stages=np.array(stages),
+            **arrays,
+        )
+
+
+def load_fit(path: Path) -> Registration:
+    """Read a fit. Raises `InputError` for a file that is missing, damaged or something else."""
+    try:
+        with np.load(path, allow_pickle=False) as file:
+            pose = Similarity(file["rotation"], float(file["scale"]), file["translation"])
+            arrays = {name: file[name] for name in _ARRAYS}
+            stages = json.loads(str(file["stages"]))
+            record = tuple(StageRecord(**{**one, "rms": tuple(one["rms"])}) for one in stages)
+            return Registration(
+                pose, **arrays, millimetres=float(file["millimetres"]), record=record
+            )
+    except BROKEN as error:
+        raise InputError(f"{path} is no fitted shape; make it with skinnet fit-shape.") from error

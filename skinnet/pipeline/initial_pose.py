@@ -1,0 +1,71 @@
+"""Where the face of a scan is that stands upright and looks along z, without landmarks."""
+
+from itertools import product
+
+import numpy as np
+from jaxtyping import Float, UInt8
+
+from skinnet.errors import NoFaceError
+from skinnet.images.faces import find_face
+from skinnet.mesh.mesh import Mesh
+from skinnet.render.camera import Orthographic
+from skinnet.render.scene import Scene
+from skinnet.render.visibility import GeometryBuffers, geometry
+from skinnet.shape.icp import FitSettings, Stage
+from skinnet.shape.model import ShapeModel
+from skinnet.shape.scan_points import Surface
+from skinnet.shape.similarity import Similarity
+
+PIXELS = 500
+"""Height and width of the picture in which the face is looked for."""
+
+_LIGHT = np.array([0.3, 0.5, 0.8])
+_SHIFTS, _SIZES = (-0.1, -0.05, 0.0, 0.05, 0.1), (0.9, 1.0, 1.1)
+
+
+def find_initial_pose(model: ShapeModel, scan: Mesh) -> Similarity:
+    """Pose of the mean face by the face that `find_face` sees in pictures of both, from ahead.
+
+    Both are drawn as grey plaster, so a texture does not matter. The found place is good to a
+    tenth of a face: of several poses around it, that whose rigid fit comes closest is taken.
+    Raises `NoFaceError` where no face is seen.
+    """
+    mean = model.mesh(np.zeros(0))
+    (own_place, own_width), (place, width) = (_face(mesh) for mesh in (mean, scan))
+    rigid = FitSettings(kept=0.9, iterations=10)
+    stage = Stage(model, Surface(scan), rigid, np.zeros(0), 800, 1, 1e3)
+    tried = []
+    for shift, size in product(_SHIFTS, _SIZES):
+        scale = size * width / own_width
+        lifted = place + np.array([0, shift * width, 0])
+        pose = Similarity(np.eye(3), scale, lifted - scale * own_place)
+        pose, _, record = stage.run(pose, np.zeros(1))
+        tried.append((record.rms[-1], pose))
+    return min(tried, key=lambda one: one[0])[1]
+
+
+def _face(mesh: Mesh) -> tuple[Float[np.ndarray, "3"], float]:
+    """The point of the mesh in the middle of its face, and the width of the detector's box."""
+    low, high = mesh.vertices.min(0), mesh.vertices.max(0)
+    scale = PIXELS / (1.1 * float((high - low)[:2].max()))
+    eye = np.array([*(low + high)[:2] / 2, high[2] + 1 / scale])
+    view = Orthographic((PIXELS, PIXELS), eye, np.eye(3), scale)
+    buffers = geometry(Scene(mesh), view)
+    box = find_face(_plaster(buffers))
+    if box is None:
+        raise NoFaceError(
+            f"{mesh.name} shows no face from ahead; turn it upright with the face along +z, or "
+            "give landmarks."
+        )
+    column, row = (box.left + box.right) / 2, (box.top + box.bottom) / 2
+    width = box.width / scale
+    middle = eye[:2] + np.array([column - PIXELS / 2, PIXELS / 2 - row]) / scale
+    near = np.linalg.norm(buffers.position[:, :2] - middle, axis=1) < 0.3 * width
+    return np.array([*middle, buffers.position[near, 2].max()]), width
+
+
+def _plaster(buffers: GeometryBuffers) -> UInt8[np.ndarray, "height width 3"]:
+    shade = 200 * (0.35 + 0.65 * buffers.normal @ _LIGHT).clip(0, 1)
+    picture = np.full(buffers.hit.shape, 200, np.uint8)
+    picture[buffers.hit] = shade.astype(np.uint8)
+    return np.repeat(picture[..., None], 3, 2)

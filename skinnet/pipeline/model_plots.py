@@ -1,0 +1,162 @@
+"""Pictures of appearance models in the manner of the paper's Figures 7 and 8."""
+
+from collections.abc import Callable, Sequence
+from functools import partial
+from pathlib import Path
+
+import numpy as np
+from jaxtyping import Bool, Float, Float32, Int, UInt8
+from matplotlib.axes import Axes
+from matplotlib.backends.backend_agg import FigureCanvasAgg
+from matplotlib.figure import Figure
+from matplotlib.ticker import MaxNLocator
+from PIL import Image
+
+from skinnet.appearance.hybrid import HybridModel
+from skinnet.appearance.linear import LinearModel
+from skinnet.appearance.measures import Curve, Measures
+from skinnet.appearance.model import AppearanceModel
+from skinnet.errors import InputError
+from skinnet.files import atomic
+from skinnet.images.photograph import linear_to_srgb, to_uint8
+from skinnet.inference.panel import BLANK, picture, pigment_map, round_top, sheet
+
+Renderer = Callable[[Float32[np.ndarray, "size size 3"]], UInt8[np.ndarray, "height width 3"]]
+"""A picture, uint8 sRGB, of a linear RGB albedo: of the mean shape that wears it, for instance."""
+
+Line = tuple[Int[np.ndarray, "counts"], Float[np.ndarray, "counts"]]
+
+
+def write_measures(path: Path, measures: Sequence[Measures]) -> None:
+    """Compactness, generalisation and specificity of some models as a PNG (Figure 8).
+
+    For a joint model the measures of shape, in mm, are added.
+    """
+    shapes = any(found.shape_generalisation is not None for found in measures)
+    figure = Figure(figsize=(15.5 if shapes else 10.5, 8.4), layout="constrained")
+    FigureCanvasAgg(figure)
+    axes = figure.subplots(2, 3 if shapes else 2)
+    share = "cumulative variance, %"
+    _draw(axes[0, 0], measures, _compactness, "(a) compactness in own features", share)
+    _draw(axes[0, 1], measures, _in_colour, "(b) compactness in linear RGB", share)
+    error, distance = "RMS error left out", "RMS to the nearest subject"
+    for axis, field, title, label in (
+        (axes[1, 0], "generalisation", "(c) generalisation", f"{error}, linear RGB"),
+        (axes[1, 1], "specificity", "(d) specificity", f"{distance}, linear RGB"),
+        (axes[0, -1], "shape_generalisation", "(e) generalisation of shape", f"{error}, mm"),
+        (axes[1, -1], "shape_specificity", "(f) specificity of shape", f"{distance}, mm"),
+    )[: 4 if shapes else 2]:
+        _draw(axis, measures, partial(_mean, field), title, label)
+    with atomic(path) as part:
+        figure.savefig(part, format="png", dpi=110)
+
+
+def _compactness(found: Measures) -> Line:
+    return np.arange(1, len(found.compactness) + 1), 100 * found.compactness
+
+
+def _in_colour(found: Measures) -> Line:
+    return found.colour_compactness.counts, 100 * found.colour_compactness.mean
+
+
+def _mean(field: str, found: Measures) -> Line | None:
+    curve: Curve | None = getattr(found, field)
+    return None if curve is None else (curve.counts, curve.mean)
+
+
+def _draw(
+    axis: Axes,
+    measures: Sequence[Measures],
+    line: Callable[[Measures], Line | None],
+    title: str,
+    label: str,
+) -> None:
+    for index, found in enumerate(measures):
+        if (points := line(found)) is not None:
+            axis.plot(*points, f"C{index}.-", label=found.name)
+    axis.set(title=title, xlabel="number of components", ylabel=label)
+    axis.set_ylim(bottom=0)
+    axis.xaxis.set_major_locator(MaxNLocator(integer=True))
+    axis.grid(alpha=0.3)
+    axis.legend()
+
+
+def hybrid_sheet(
+    model: HybridModel,
+    deviations: float = 3.0,
+    components: int = 3,
+    renderer: Renderer | None = None,
+) -> UInt8[np.ndarray, "height width 3"]:
+    """The mean and the first components at -/+ some deviations, uint8 sRGB (Figure 7).
+
+    Melanin above, hemoglobin in the middle, the resulting appearance below, by `renderer` or as a
+    texture.
+    """
+    captions, betas = _corners(model, deviations, components)
+    textures = [model.texture(beta) for beta in betas]
+    melanin = _pigments("melanin", captions, [face.f_mel for face in textures], model.mask)
+    blood = _pigments("hemoglobin", captions, [face.f_blood for face in textures], model.mask)
+    return sheet([*melanin, *blood, *_appearances(model, captions, betas, renderer)], len(betas))
+
+
+def linear_sheet(
+    model: LinearModel,
+    deviations: float = 3.0,
+    components: int = 3,
+    renderer: Renderer | None = None,
+) -> UInt8[np.ndarray, "height width 3"]:
+    """The mean and the first components of a linear model at -/+ some deviations, uint8 sRGB."""
+    captions, betas = _corners(model, deviations, components)
+    return sheet(_appearances(model, captions, betas, renderer), len(betas))
+
+
+def _corners(
+    model: AppearanceModel, deviations: float, components: int
+) -> tuple[list[str], list[Float[np.ndarray, "components"]]]:
+    most = len(model.statistics.variances)
+    if not 1 <= components <= most:
+        raise InputError(f"The model has {most} components; {components} cannot be shown.")
+    captions, betas = ["mean"], [np.zeros(most)]
+    for index in range(components):
+        for sign in (-1, 1):
+            beta = np.zeros(most)
+            beta[index] = sign * deviations * np.sqrt(model.statistics.variances[index])
+            betas.append(beta)
+            captions.append(f"component {index + 1}, {sign * deviations:+g} sd")
+    return captions, betas
+
+
+def _pigments(
+    name: str,
+    captions: Sequence[str],
+    maps: Sequence[Float32[np.ndarray, "size size"]],
+    mask: Bool[np.ndarray, "size size"],
+) -> list[Image.Image]:
+    """Tiles of one pigment on one scale, so that they can be compared."""
+    top = round_top(float(np.percentile([values[mask] for values in maps], 99)))
+    share = mask.astype(np.float64)
+    return [
+        pigment_map(name, values, share, top, caption)
+        for caption, values in zip(captions, maps, strict=True)
+    ]
+
+
+def _appearances(
+    model: AppearanceModel,
+    captions: Sequence[str],
+    betas: Sequence[Float[np.ndarray, "components"]],
+    renderer: Renderer | None,
+) -> list[Image.Image]:
+    pictures = []
+    for caption, beta in zip(captions, betas, strict=True):
+        albedo = model.reconstruct(beta)
+        shown = renderer(albedo) if renderer else _flat(albedo, model.mask)
+        pictures.append(picture(caption, shown))
+    return pictures
+
+
+def _flat(
+    albedo: Float32[np.ndarray, "size size 3"], mask: Bool[np.ndarray, "size size"]
+) -> UInt8[np.ndarray, "size size 3"]:
+    blank = np.array(BLANK, np.uint8)
+    return np.where(mask[..., None], to_uint8(linear_to_srgb(albedo)), blank)

@@ -1,0 +1,90 @@
+"""The model that ships reads a photograph as skin, in torch and in onnxruntime alike."""
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+import torch
+from skimage.color import rgb2lab
+from skimage.data import astronaut
+
+from skinnet import Decomposer, Decomposition
+from skinnet.images.photograph import srgb_to_linear
+from skinnet.inference.decomposer import shipped_model
+from skinnet.network.weights import SHIPPED, load_weights
+from skinnet.physics.decoder import srgb
+
+MODELS = SHIPPED.parent
+
+
+@pytest.fixture(scope="module")
+def found() -> Decomposition:
+    return Decomposer()(astronaut())
+
+
+@pytest.fixture(scope="module")
+def skin(found: Decomposition) -> np.ndarray:
+    return found.mask > 0.5
+
+
+def test_the_models_take_at_most_ten_megabytes() -> None:
+    assert sum(path.stat().st_size for path in MODELS.iterdir()) <= 10e6
+
+
+def test_the_card_stands_beside_the_models() -> None:
+    card = (MODELS / "MODEL_CARD.md").read_text(encoding="utf-8")
+    assert Decomposer().encoder.trained_on.split(";")[0] in card.replace("\n", " ")
+
+
+def test_torch_and_onnxruntime_agree() -> None:
+    photograph = astronaut()[None, :200:2, 120:300:2]
+    encoder, decoder = Decomposer().encoder, Decomposer().decoder
+    codes = encoder.run({"image": photograph})
+    with torch.no_grad():
+        reading = load_weights()(torch.from_numpy(photograph).movedim(-1, 1) / 255)
+    maps = reading.maps._replace(offset=reading.maps.offset.movedim(1, -1))
+    for name in ("melanin", "hemoglobin", "shading", "mask", "offset"):
+        assert np.abs(codes[name] - getattr(maps, name).numpy()).max() < 1e-3
+    image = decoder.run({name: value for name, value in codes.items() if name != "mask"})["image"]
+    expected = srgb(reading.reconstruction).movedim(1, -1).numpy()
+    assert np.abs(image - expected).max() < 2e-3
+
+
+def test_fractions_are_those_of_skin(found: Decomposition, skin: np.ndarray) -> None:
+    assert 0.08 < skin[found.box.slices].mean() < 0.5
+    assert 0.01 < np.median(found.melanin[skin]) < 0.1
+    assert 0.01 < np.median(found.hemoglobin[skin]) < 0.1
+    assert found.melanin.max() <= 0.43 and found.hemoglobin.max() <= 0.15
+
+
+def test_maps_are_smooth_on_skin(found: Decomposition, skin: np.ndarray) -> None:
+    for values in (found.melanin, found.hemoglobin):
+        steps = np.abs(np.diff(values, axis=1))[skin[:, 1:] & skin[:, :-1]]
+        assert steps.mean() < 0.05 * values[skin].mean()
+
+
+def test_the_reconstruction_resembles_the_photograph(
+    found: Decomposition, skin: np.ndarray
+) -> None:
+    error = srgb_to_linear(found.reconstruction) - srgb_to_linear(astronaut())
+    assert np.sqrt((error[skin] ** 2).mean()) < 0.04
+    assert np.sqrt((error[found.box.slices] ** 2).mean()) < 0.04
+
+
+def test_edits_are_a_tan_and_a_flush(skin: np.ndarray) -> None:
+    photograph = astronaut()
+    decompose = Decomposer()
+    tanned = decompose.edit(photograph, melanin=1.5)
+    flushed = decompose.edit(photograph, hemoglobin=2.0)
+    before, tan, flush = (rgb2lab(image)[skin].mean(0) for image in (photograph, tanned, flushed))
+    assert tan[0] < before[0] - 1 and tan[2] > before[2]
+    assert flush[0] < before[0] and flush[1] > before[1] + 1
+    untouched = (tanned == photograph).all(-1) & (flushed == photograph).all(-1)
+    assert untouched[: photograph.shape[0] // 10].all() and untouched.mean() > 0.8
+
+
+def test_the_shipped_files_are_in_the_package() -> None:
+    names = {path.name for path in shipped_model().parent.iterdir()}
+    files = {"skin.onnx", "skin.decoder.onnx", "skin.safetensors"}
+    assert names == files | {"MODEL_CARD.md", "CHANGELOG.md"}
+    assert Path(SHIPPED).is_file()

@@ -1,0 +1,108 @@
+"""Encoder and controls: any size in, physical ranges out."""
+
+from copy import deepcopy
+
+import pytest
+import torch
+
+from skinnet.network.autoencoder import (
+    CAMERA_MAX,
+    F_BLOOD_MAX,
+    F_MEL_MAX,
+    GLOBALS,
+    MAPS,
+    SHADING_MAX,
+    WHITE_BALANCE_MAX,
+    AutoencoderConfig,
+    SkinAutoencoder,
+    controls,
+)
+from skinnet.physics.camera import LIGHTS
+from skinnet.physics.decoder import SkinDecoder
+
+
+@pytest.fixture(scope="module")
+def model() -> SkinAutoencoder:
+    torch.manual_seed(0)
+    return SkinAutoencoder(AutoencoderConfig(widths=(4, 6, 8))).eval()
+
+
+@pytest.mark.parametrize("size", [(1, 1), (3, 2), (17, 33), (64, 48)])
+def test_any_size_is_read(model: SkinAutoencoder, size: tuple[int, int]) -> None:
+    reading = model(torch.rand(2, 3, *size))
+    assert reading.reconstruction.shape == (2, 3, *size)
+    assert all(value.shape[-2:] == size for value in reading.maps)
+    assert reading.capture.light.shape == (2, len(LIGHTS))
+
+
+def test_the_default_network_is_light() -> None:
+    weights = sum(value.numel() for value in SkinAutoencoder().encoder.parameters())
+    assert weights < 1_200_000
+
+
+def test_the_reconstruction_is_the_decoder_s(model: SkinAutoencoder) -> None:
+    maps, capture, reconstruction = model(torch.rand(2, 3, 12, 10))
+    pixels = (maps.melanin, maps.hemoglobin, maps.shading, maps.specular, maps.offset)
+    assert torch.allclose(SkinDecoder()(*pixels, capture=capture), reconstruction, atol=1e-6)
+
+
+@pytest.mark.parametrize("raw", [-1e4, -3.0, 0.0, 3.0, 1e4])
+def test_controls_stay_in_their_ranges(raw: float) -> None:
+    white = torch.ones(1, 3, 2, 2)
+    maps, capture = controls(torch.full((1, MAPS, 2, 2), raw), torch.full((1, GLOBALS), raw), white)
+    for value, low, high in (
+        (maps.melanin, 0, F_MEL_MAX),
+        (maps.hemoglobin, 0, F_BLOOD_MAX),
+        (maps.shading, 0, SHADING_MAX),
+        (maps.specular, 0, 1),
+        (maps.offset, -1, 1),
+        (maps.mask, 0, 1),
+        (capture.temperature, 3999.9, 25000.1),
+        (capture.camera, -CAMERA_MAX, CAMERA_MAX),
+        (capture.white_balance, -WHITE_BALANCE_MAX, WHITE_BALANCE_MAX),
+    ):
+        assert low <= value.min() and value.max() <= high
+    assert capture.light.sum() == pytest.approx(1)
+
+
+def test_raw_zero_is_ordinary_skin_in_ordinary_light() -> None:
+    raw = torch.zeros(1, MAPS, 1, 1), torch.zeros(1, GLOBALS)
+    maps, capture = controls(*raw, torch.zeros(1, 3, 1, 1))
+    assert 0.02 < maps.melanin.item() < 0.1 and 0.01 < maps.hemoglobin.item() < 0.05
+    assert maps.shading.item() == pytest.approx(1, abs=0.02) and maps.specular.item() < 0.05
+    assert 5000 < capture.temperature.item() < 8000
+    assert capture.camera.abs().max() == 0 and capture.white_balance.abs().max() == 0
+
+
+def test_without_skin_the_offset_is_the_photograph() -> None:
+    raw, linear = torch.zeros(1, MAPS, 2, 2), torch.rand(1, 3, 2, 2)
+    raw[:, -1] = torch.tensor([[-1e4, 0.0], [1e4, 0.0]])
+    raw.requires_grad_()
+    maps, _ = controls(raw, torch.zeros(1, GLOBALS), linear)
+    left = torch.tensor([[1.0, 0.5], [0.0, 0.5]])
+    torch.testing.assert_close(maps.offset, left * linear)
+    (slope,) = torch.autograd.grad(maps.offset.sum() + 0 * raw.sum(), raw)
+    assert not slope.any()  # or no skin at all would explain a photograph best
+
+
+def test_votes_reach_the_white_balance_directly(model: SkinAutoencoder) -> None:
+    model, photograph = deepcopy(model), torch.rand(1, 3, 24, 20)
+    with torch.no_grad():
+        model.encoder.weigh[-1].weight.zero_()  # the other way
+        before = model.encode(photograph)[1].white_balance
+        model.encoder.gather.expect.bias += 0.1
+        assert (model.encode(photograph)[1].white_balance != before).all()
+
+
+def test_controls_of_half_precision_are_float32_and_float64_stays() -> None:
+    for given, kept in ((torch.bfloat16, torch.float32), (torch.float64, torch.float64)):
+        raw = torch.zeros(1, MAPS, 2, 2, dtype=given), torch.zeros(1, GLOBALS, dtype=given)
+        maps, capture = controls(*raw, torch.zeros(1, 3, 2, 2))
+        assert maps.melanin.dtype == kept and capture.light.dtype == kept
+
+
+def test_gradients_of_the_appearance_reach_every_weight(model: SkinAutoencoder) -> None:
+    model.zero_grad()
+    reading = model(torch.rand(2, 3, 16, 16))
+    (reading.reconstruction.square().mean() + reading.maps.mask.mean()).backward()
+    assert all(value.grad is not None for value in model.encoder.parameters())

@@ -1,0 +1,69 @@
+"""Pictures are written, have their rows and columns, and leave matplotlib as it was."""
+
+import subprocess
+import sys
+from pathlib import Path
+
+import numpy as np
+import pytest
+from PIL import Image
+
+from skinnet.appearance.hybrid import HybridModel
+from skinnet.appearance.linear import LinearModel
+from skinnet.appearance.measures import Curve, Measures
+from skinnet.appearance.stack import SubjectStack
+from skinnet.errors import InputError
+from skinnet.inference.panel import TILE
+from skinnet.pipeline.model_plots import hybrid_sheet, linear_sheet, write_measures
+
+
+def measures(name: str, shape: bool) -> Measures:
+    counts = np.arange(1, 6)
+    curve = Curve(counts, np.ones((5, 3)) / counts[:, None], "")
+    more = (curve, curve) if shape else (None, None)
+    return Measures(name, np.linspace(0.5, 1, 6), curve, curve, curve, *more)
+
+
+@pytest.mark.parametrize("shape", [True, False])
+def test_curves_are_written_without_pyplot(tmp_path: Path, shape: bool) -> None:
+    path = tmp_path / "measures.png"
+    write_measures(path, [measures("hybrid", False), measures("other", shape)])
+    with Image.open(path) as picture:
+        assert picture.format == "PNG" and (picture.width > 1.7 * picture.height) == shape
+    assert [file.name for file in tmp_path.iterdir()] == ["measures.png"]
+
+
+def test_no_global_state_of_matplotlib_is_touched() -> None:
+    program = "import sys, skinnet.pipeline.model_plots; print('matplotlib.pyplot' in sys.modules)"
+    done = subprocess.run(
+        [sys.executable, "-c", program], capture_output=True, text=True, check=True
+    )
+    assert done.stdout.strip() == "False"
+
+
+def test_the_hybrid_has_three_rows(stack: SubjectStack) -> None:
+    model = HybridModel.fit(stack)
+    picture = hybrid_sheet(model, deviations=2.0, components=2)
+    one = linear_sheet(LinearModel.fit(stack), deviations=2.0, components=2)
+    assert picture.dtype == np.uint8 and picture.shape[1] == one.shape[1] > 5 * TILE
+    assert 2.8 < picture.shape[0] / one.shape[0] <= 3
+
+
+def test_the_appearance_can_be_rendered(stack: SubjectStack) -> None:
+    seen: list[np.ndarray] = []
+
+    def renderer(albedo: np.ndarray) -> np.ndarray:
+        seen.append(albedo)
+        return np.full((10, 30, 3), 200, np.uint8)
+
+    model = HybridModel.fit(stack)
+    hybrid_sheet(model, components=1, renderer=renderer)
+    assert np.array_equal(seen[0], model.reconstruct(np.zeros(6))) and len(seen) == 3
+    beta = np.eye(6)[0] * -3 * np.sqrt(model.statistics.variances)
+    assert np.allclose(seen[1], model.reconstruct(beta))
+
+
+@pytest.mark.parametrize("components", [0, 7])
+def test_components_that_are_not_there_are_refused(stack: SubjectStack, components: int) -> None:
+    with pytest.raises(InputError, match=f"The model has 6 components; {components} cannot"):
+        hybrid_sheet(HybridModel.fit(stack), components=components)

@@ -1,0 +1,49 @@
+"""Cutting and joining of labelled meshes."""
+
+import numpy as np
+import pytest
+
+from skinnet.mesh.topology import boundary
+from train.synthetic.labels import EYE, SKIN
+from train.synthetic.part import Part, clipped, joined, mirrored, part, sheet
+
+
+@pytest.fixture
+def square() -> Part:
+    x, y = np.meshgrid(np.linspace(-1, 1, 8), np.linspace(1, -1, 8))
+    points = np.stack([x, y, 0 * x], -1).reshape(-1, 3)
+    return part(points, sheet(8, 8), SKIN, points[:, :2] * 2)
+
+
+def test_a_sheet_faces_the_viewer(square: Part) -> None:
+    assert (_areas(square)[:, 2] > 0).all()
+
+
+def test_a_cut_keeps_area_chart_and_orientation(square: Part) -> None:
+    value = square.vertices[:, 0] + 0.3 * square.vertices[:, 1] - 0.123
+    right, left = clipped(square, value), clipped(square, -value, EYE)
+    assert _areas(right)[:, 2].sum() + _areas(left)[:, 2].sum() == pytest.approx(8)
+    assert (_areas(right)[:, 2] > -1e-12).all()
+    np.testing.assert_allclose(right.chart, 2 * right.vertices[:, :2], atol=1e-12)
+    assert set(right.label) == {SKIN} and set(left.label) == {EYE}
+    assert (right.vertices @ [1, 0.3, 0] > 0.123 - 1e-12).all()
+
+
+def test_a_cut_leaves_no_gaps(square: Part) -> None:
+    cut = clipped(square, 0.6 - np.hypot(*square.vertices[:, :2].T))
+    rim = cut.triangles[boundary(cut.triangles).any(1)]
+    assert np.hypot(*cut.vertices[rim].reshape(-1, 3)[:, :2].T).max() < 0.7
+    assert len(cut.vertices) - len(cut.triangles) * 3 / 2 - boundary(cut.triangles).sum() / 2 + len(
+        cut.triangles
+    ) == pytest.approx(1)
+
+
+def test_a_mirror_image_faces_the_same_way(square: Part) -> None:
+    both = joined([square, mirrored(square)])
+    assert (_areas(both)[:, 2] > 0).all()
+    assert len(both.vertices) == 2 * len(square.vertices)
+
+
+def _areas(whole: Part) -> np.ndarray:
+    a, b, c = np.moveaxis(whole.vertices[whole.triangles], 1, 0)
+    return np.cross(b - a, c - a)
