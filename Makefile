@@ -3,7 +3,7 @@ PYTHON ?= $(or $(shell command -v python3.11),python3)
 BIN := .venv/bin
 READY := .venv/.ready
 
-.PHONY: demo test lint format bench wheel clean
+.PHONY: demo test test-fast lint format bench wheel clean
 
 demo: $(READY)
 	$(BIN)/python -m train fit --config configs/quick.yaml
@@ -11,12 +11,16 @@ demo: $(READY)
 	$(BIN)/python -m examples.astronaut
 
 test: $(READY)
-	$(BIN)/python -m pytest
+	$(BIN)/python -m pytest -n 2 --cov --cov-report=term:skip-covered
+
+test-fast: $(READY)
+	$(BIN)/python -m pytest -n 2 -m "not slow"
 
 lint: $(READY)
 	$(BIN)/ruff check .
 	$(BIN)/ruff format --check .
 	$(BIN)/mypy
+	$(BIN)/lint-imports
 
 format: $(READY)
 	$(BIN)/ruff check --fix .
@@ -29,6 +33,7 @@ bench: $(READY)
 	$(BIN)/python -m benchmarks.fit
 	$(BIN)/python -m benchmarks.texture
 	$(BIN)/python -m benchmarks.lookup
+	$(BIN)/python -m benchmarks.calibration
 	$(BIN)/python -m benchmarks.appearance
 	$(BIN)/python -m benchmarks.full_resolution
 	$(BIN)/python -m benchmarks.encoder
