@@ -20,8 +20,8 @@ from skinnet.errors import InputError
 from skinnet.mesh.mesh_file import read_mesh
 from skinnet.network.autoencoder import F_BLOOD_MAX, F_MEL_MAX
 from skinnet.physics.decoder import SkinDecoder
-from skinnet.render.camera import front
 from skinnet.render.scene import Scene
+from skinnet.render.views import front
 from skinnet.render.visibility import geometry
 from train.batch import Batch
 from train.stream import StreamLoader, seen_samples

@@ -7,11 +7,11 @@ from PIL import Image
 
 from skinnet.errors import InputError
 from skinnet.files import written_together
+from skinnet.mesh._mesh_parts import Part, obj_positions, read_parts, stack
+from skinnet.mesh._seams import join_corners, share_coordinates
+from skinnet.mesh._texture_atlas import Page, join
+from skinnet.mesh._texture_file import Texture, picture_beside, read_texture
 from skinnet.mesh.mesh import Mesh
-from skinnet.mesh.mesh_parts import Part, obj_positions, read_parts, stack
-from skinnet.mesh.seams import join_corners, share_coordinates
-from skinnet.mesh.texture_atlas import Page, join
-from skinnet.mesh.texture_file import Texture, picture_beside, read_texture
 
 
 def read_mesh(path: Path, texture: Path | None = None) -> Mesh:

@@ -3,7 +3,7 @@
 import numpy as np
 from jaxtyping import Float, Int
 
-from skinnet.mesh.topology import weld
+from skinnet.mesh._topology import weld
 
 
 def smooth_normals(

@@ -7,10 +7,10 @@ import numpy as np
 from jaxtyping import Bool, Float, Int
 
 from skinnet.errors import InputError
+from skinnet.mesh._orientation import areas, disagreeing, face_components, inside_out, turned
+from skinnet.mesh._texture_atlas import wrap
+from skinnet.mesh._topology import edge_keys, half_edges
 from skinnet.mesh.mesh import Mesh
-from skinnet.mesh.orientation import areas, disagreeing, face_components, inside_out, turned
-from skinnet.mesh.texture_atlas import wrap
-from skinnet.mesh.topology import edge_keys, half_edges
 
 DAMAGED = 0.1
 """Largest share of vertices that are not finite, or of faces without an area, that is left out."""

@@ -8,8 +8,8 @@ from jaxtyping import Float, UInt8
 from skinnet.errors import NoFaceError
 from skinnet.images.faces import find_face
 from skinnet.mesh.mesh import Mesh
-from skinnet.render.camera import Orthographic
 from skinnet.render.scene import Scene
+from skinnet.render.views import Orthographic
 from skinnet.render.visibility import GeometryBuffers, geometry
 from skinnet.shape.icp import FitSettings, Stage
 from skinnet.shape.model import ShapeModel

@@ -5,9 +5,9 @@ from jaxtyping import Float, UInt8
 
 from skinnet.inference.panel import TILE, mapped, picture, sheet
 from skinnet.mesh.mesh import Mesh
-from skinnet.render.camera import Perspective, front
+from skinnet.render._shading import render
 from skinnet.render.lights import Directional, SphericalHarmonics
-from skinnet.render.shade import render
+from skinnet.render.views import Perspective, front
 from skinnet.render.visibility import geometry
 from skinnet.shape.registration import Registration
 

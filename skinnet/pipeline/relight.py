@@ -8,9 +8,9 @@ from jaxtyping import Float32, UInt8
 
 from skinnet.errors import InputError
 from skinnet.mesh.mesh import Mesh
-from skinnet.render.camera import front
+from skinnet.render._shading import SKIN_SPECULAR, render
 from skinnet.render.lights import Directional, Light, SphericalHarmonics
-from skinnet.render.shade import SKIN_SPECULAR, render
+from skinnet.render.views import front
 
 Direction = tuple[float, float, float]
 

@@ -8,8 +8,8 @@ from jaxtyping import Bool, Float, Int
 
 from skinnet.mesh.mesh import Mesh
 from skinnet.mesh.normals import unit
-from skinnet.render.camera import View
 from skinnet.render.scene import BIAS, Scene, disc, tangents, turned
+from skinnet.render.views import View
 
 
 @dataclass(frozen=True)

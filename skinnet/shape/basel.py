@@ -18,7 +18,7 @@ from scipy.spatial import cKDTree
 
 from skinnet.errors import InputError
 from skinnet.files import BROKEN
-from skinnet.mesh.orientation import inside_out
+from skinnet.mesh._orientation import inside_out
 from skinnet.shape.model import ShapeModel, checked_model
 
 _LANDMARKS = {

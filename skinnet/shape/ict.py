@@ -14,9 +14,9 @@ import numpy as np
 from jaxtyping import Float
 
 from skinnet.errors import InputError
+from skinnet.mesh._mesh_parts import obj_positions
+from skinnet.mesh._seams import positions_in, share_coordinates
 from skinnet.mesh.mesh_file import read_mesh
-from skinnet.mesh.mesh_parts import obj_positions
-from skinnet.mesh.seams import positions_in, share_coordinates
 from skinnet.shape.landmarks import ibug_name
 from skinnet.shape.model import ShapeModel, checked_model
 

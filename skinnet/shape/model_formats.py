@@ -10,7 +10,7 @@ import numpy as np
 
 from skinnet.errors import InputError
 from skinnet.files import BROKEN, atomic
-from skinnet.mesh.mesh_parts import SUFFIXES
+from skinnet.mesh._mesh_parts import SUFFIXES
 from skinnet.shape.basel import load_basel_2009, load_basel_2017
 from skinnet.shape.default import default_model
 from skinnet.shape.ict import NEUTRAL, ict_from_arrays, load_ict_folder

@@ -7,12 +7,12 @@ import numpy as np
 from jaxtyping import Float, Int
 
 from skinnet.errors import InputError
+from skinnet.mesh._mesh_parts import Part, obj_positions, read_parts, stack
+from skinnet.mesh._seams import positions_in, share_coordinates
+from skinnet.mesh._texture_atlas import Page, join
+from skinnet.mesh._topology import weld
 from skinnet.mesh.mesh import Mesh
-from skinnet.mesh.mesh_parts import Part, obj_positions, read_parts, stack
 from skinnet.mesh.repair import guess_millimetres
-from skinnet.mesh.seams import positions_in, share_coordinates
-from skinnet.mesh.texture_atlas import Page, join
-from skinnet.mesh.topology import weld
 from skinnet.shape.model import ShapeModel
 from skinnet.shape.similarity import similarity
 

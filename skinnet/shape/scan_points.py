@@ -8,9 +8,9 @@ from scipy.spatial import cKDTree
 from trimesh.remesh import subdivide
 
 from skinnet.errors import InputError
+from skinnet.mesh._topology import boundary, half_edges
 from skinnet.mesh.mesh import Mesh
 from skinnet.mesh.normals import smooth_normals
-from skinnet.mesh.topology import boundary, half_edges
 
 DENSE = 60_000
 """A coarser scan is subdivided, all triangles into four, until it has this many points."""

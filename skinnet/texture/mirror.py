@@ -4,7 +4,7 @@ import numpy as np
 from jaxtyping import Float, Int
 from scipy.spatial import cKDTree
 
-from skinnet.mesh.topology import boundary, edge_keys, half_edges
+from skinnet.mesh._topology import boundary, edge_keys, half_edges
 
 TOLERANCE = 1e-3
 """How far from its mirror image a vertex may lie, as a share of the largest extent."""

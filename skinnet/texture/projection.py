@@ -7,11 +7,11 @@ from jaxtyping import Bool, Float, Int
 
 from skinnet.errors import InputError
 from skinnet.images.photograph import srgb_to_linear
+from skinnet.mesh._topology import boundary, components, weld
 from skinnet.mesh.closest_point import Closest, ClosestPoints
 from skinnet.mesh.mesh import Mesh
 from skinnet.mesh.normals import smooth_normals, unit
 from skinnet.mesh.sampling import bilinear
-from skinnet.mesh.topology import boundary, components, weld
 from skinnet.texture.warp import TextureSpace, Warped, warp_texture
 
 NORMAL_LIMIT = 60.0

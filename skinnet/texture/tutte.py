@@ -10,7 +10,7 @@ from scipy.sparse import coo_array, diags_array
 from scipy.sparse.linalg import splu
 
 from skinnet.errors import InputError
-from skinnet.mesh.topology import boundary_loops, components, edge_keys, half_edges
+from skinnet.mesh._topology import boundary_loops, components, edge_keys, half_edges
 from skinnet.texture.mirror import with_mirror_images
 
 MARGIN = 1 / 128

@@ -6,8 +6,8 @@ import numpy as np
 from jaxtyping import Float, Float16, Int8, UInt8, UInt64
 
 from skinnet.mesh.mesh import Mesh
-from skinnet.render.camera import Orthographic, Perspective
 from skinnet.render.scene import Scene
+from skinnet.render.views import Orthographic, Perspective
 from skinnet.render.visibility import GeometryBuffers, geometry
 from train.synthetic.directions import DIRECTIONS
 from train.synthetic.heads import Head

@@ -3,8 +3,8 @@
 import numpy as np
 from trimesh.creation import box, icosphere
 
+from skinnet.mesh._topology import weld
 from skinnet.mesh.normals import smooth_normals, unit
-from skinnet.mesh.topology import weld
 
 
 def test_a_sphere_s_normals_point_outwards() -> None:

@@ -9,9 +9,9 @@ import trimesh
 from small_meshes import dome
 
 from skinnet.errors import InputError
+from skinnet.mesh._orientation import inside_out
 from skinnet.mesh.mesh import Mesh
 from skinnet.mesh.mesh_file import read_mesh
-from skinnet.mesh.orientation import inside_out
 from skinnet.mesh.repair import check_mesh, guess_millimetres
 
 

@@ -7,8 +7,8 @@ from trimesh.creation import box, icosphere
 from skinnet.errors import InputError
 from skinnet.mesh.mesh import Mesh
 from skinnet.mesh.normals import unit
-from skinnet.render.camera import Orthographic, Perspective, orbit
 from skinnet.render.scene import Scene
+from skinnet.render.views import Orthographic, Perspective, orbit
 from skinnet.render.visibility import geometry
 
 

@@ -5,8 +5,8 @@ import pytest
 import torch
 
 from skinnet.errors import InputError
-from skinnet.mesh.orientation import face_components, inside_out
-from skinnet.mesh.topology import boundary_loops
+from skinnet.mesh._orientation import face_components, inside_out
+from skinnet.mesh._topology import boundary_loops
 from skinnet.shape.default import MODES, default_model, procedural_model
 from skinnet.shape.landmarks import IBUG
 from skinnet.shape.procedural import CHART, IDENTITY, relief

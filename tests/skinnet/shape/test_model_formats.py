@@ -13,9 +13,9 @@ from scipy.io import savemat
 from small_meshes import LANDMARKS, dome, small_model
 
 from skinnet.errors import InputError
+from skinnet.mesh._orientation import inside_out, turned
 from skinnet.mesh.mesh import Mesh
 from skinnet.mesh.mesh_file import write_mesh
-from skinnet.mesh.orientation import inside_out, turned
 from skinnet.shape.default import default_model
 from skinnet.shape.landmarks import IBUG
 from skinnet.shape.model import ShapeModel

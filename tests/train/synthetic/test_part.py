@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from skinnet.mesh.topology import boundary
+from skinnet.mesh._topology import boundary
 from train.synthetic.labels import EYE, SKIN
 from train.synthetic.part import Part, clipped, joined, mirrored, part, sheet
 

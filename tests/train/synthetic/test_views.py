@@ -4,8 +4,8 @@ import numpy as np
 import pytest
 
 from skinnet.mesh.mesh import Mesh
-from skinnet.render.camera import Orthographic
 from skinnet.render.scene import Scene
+from skinnet.render.views import Orthographic
 from skinnet.render.visibility import geometry
 from train.synthetic.directions import DIRECTIONS, LOWEST
 from train.synthetic.heads import Head

@@ -8,9 +8,9 @@ from skinnet.errors import InputError
 from skinnet.images.photograph import linear_to_srgb, to_uint8
 from skinnet.mesh.mesh import Mesh
 from skinnet.mesh.normals import unit
-from skinnet.render.camera import Orthographic, front, orbit
+from skinnet.render._shading import EXPONENT, relight, render
 from skinnet.render.lights import Directional, SphericalHarmonics
-from skinnet.render.shade import EXPONENT, relight, render
+from skinnet.render.views import Orthographic, front, orbit
 from skinnet.render.visibility import geometry
 
 _SPHERE = icosphere(subdivisions=4)

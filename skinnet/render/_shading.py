@@ -11,9 +11,9 @@ from skinnet.images.photograph import linear_to_srgb, to_uint8
 from skinnet.mesh.mesh import Mesh
 from skinnet.mesh.normals import unit
 from skinnet.mesh.sampling import bilinear
-from skinnet.render.camera import View
 from skinnet.render.lights import Light
 from skinnet.render.scene import Scene
+from skinnet.render.views import View
 from skinnet.render.visibility import GeometryBuffers, geometry
 
 SKIN_SPECULAR = 0.028

@@ -6,7 +6,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from skinnet.errors import InputError
-from skinnet.render.camera import Orthographic, Perspective, View, front, orbit
+from skinnet.render.views import Orthographic, Perspective, View, front, orbit
 
 HEAD = np.random.default_rng(0).normal(size=(500, 3)) * [70, 100, 80] + [3, -20, 40]
 

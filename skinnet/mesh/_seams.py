@@ -3,8 +3,8 @@
 import numpy as np
 from jaxtyping import Float, Int
 
-from skinnet.mesh.mesh_parts import Corners
-from skinnet.mesh.topology import weld
+from skinnet.mesh._mesh_parts import Corners
+from skinnet.mesh._topology import weld
 
 Points = Float[np.ndarray, "points 2"]
 Numbers = Int[np.ndarray, "vertices"]

@@ -7,7 +7,7 @@ from jaxtyping import Bool, Float, Int
 from scipy.sparse import coo_array
 from scipy.sparse.csgraph import connected_components
 
-from skinnet.mesh.topology import edge_keys, half_edges
+from skinnet.mesh._topology import edge_keys, half_edges
 
 Vertices = Float[np.ndarray, "vertices 3"]
 Triangles = Int[np.ndarray, "triangles 3"]

@@ -13,7 +13,7 @@ from trimesh.visual.material import PBRMaterial
 
 from skinnet.errors import InputError
 from skinnet.files import BROKEN
-from skinnet.mesh.texture_file import Texture, decode_texture
+from skinnet.mesh._texture_file import Texture, decode_texture
 
 SUFFIXES = (".obj", ".ply", ".glb", ".gltf", ".stl")
 """Suffixes of the mesh files that are read."""
