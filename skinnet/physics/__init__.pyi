@@ -1,0 +1,3 @@
+from .srgb import luminance as luminance
+
+__all__ = ["luminance"]
