@@ -3,7 +3,7 @@ PYTHON ?= $(or $(shell command -v python3.11),python3)
 BIN := .venv/bin
 READY := .venv/.ready
 
-.PHONY: demo test test-fast lint format bench wheel clean
+.PHONY: demo test test-fast test-lowest lint format bench wheel clean
 
 demo: $(READY)
 	$(BIN)/python -m train fit --config configs/quick.yaml
@@ -15,6 +15,13 @@ test: $(READY)
 
 test-fast: $(READY)
 	$(BIN)/python -m pytest -n 2 -m "not slow"
+
+# In an environment of its own, with the lowest versions that pyproject.toml allows.
+test-lowest:
+	$(PYTHON) -m venv .venv-lowest
+	$(PYTHON) tools/lowest.py > .venv-lowest/constraints.txt
+	.venv-lowest/bin/python -m pip install --quiet -c .venv-lowest/constraints.txt -e ".[dev]"
+	.venv-lowest/bin/python -m pytest -n 2
 
 lint: $(READY)
 	$(BIN)/ruff check .
@@ -43,7 +50,7 @@ wheel: $(READY)
 	$(BIN)/python -m build --wheel
 
 clean:
-	rm -rf .venv build dist
+	rm -rf .venv .venv-lowest build dist
 
 # The constraints hold the tested versions; without them a package that needs torch may bring CUDA.
 $(READY): pyproject.toml constraints.txt
