@@ -5,7 +5,7 @@ from collections.abc import Iterable, Mapping
 import torch
 from torch import Tensor
 
-from benchmarks.moments import Moments
+from benchmarks.running_statistics import Moments
 from benchmarks.scene import Pixels, Scene, under_daylight
 from skinnet.physics.decoder import SkinDecoder
 

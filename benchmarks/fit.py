@@ -24,12 +24,12 @@ from scipy.spatial.transform import Rotation
 
 from benchmarks.report import Results, main
 from skinnet.mesh.mesh import Mesh
+from skinnet.shape._moments import gather
+from skinnet.shape._scan_points import Surface
+from skinnet.shape._separable import Separable
 from skinnet.shape.model import ShapeModel
-from skinnet.shape.moments import gather
-from skinnet.shape.procedural import IDENTITY, chart, relief
+from skinnet.shape.procedural_head import IDENTITY, chart, relief
 from skinnet.shape.registration import Registration, register
-from skinnet.shape.scan_points import Surface
-from skinnet.shape.separable import Separable
 from skinnet.shape.similarity import Similarity, similarity
 
 VERTICES, MODES = 53_490, 199

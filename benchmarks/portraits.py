@@ -16,9 +16,9 @@ from numpy.typing import NDArray
 from scipy.stats import spearmanr
 
 from benchmarks.disturbances import DISTURBANCES, UNDONE
-from benchmarks.moments import Moments
 from benchmarks.reader import Reader, composed, resized
 from benchmarks.report import Results
+from benchmarks.running_statistics import Moments
 from benchmarks.scene import under_daylight
 from benchmarks.typology import GROUPS, group, typology_angle
 from skinnet.images.faces import crop_box, find_face, resize, skin_mask

@@ -5,7 +5,7 @@ from typing import Any
 import torch
 from torch import Tensor
 
-from benchmarks.moments import Moments
+from benchmarks.running_statistics import Moments
 from benchmarks.scene import Pixels, Scene, mean_by
 from benchmarks.typology import GROUPS, group
 from skinnet.network.autoencoder import F_MEL_MAX

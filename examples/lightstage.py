@@ -24,7 +24,7 @@ from skinnet.images.photograph import linear_to_srgb, to_uint8
 from skinnet.mesh.mesh import Mesh
 from skinnet.mesh.mesh_file import write_mesh
 from skinnet.physics.sources import spectrum_matrix
-from skinnet.shape.default import default_model
+from skinnet.shape._default_model import default_model
 from skinnet.shape.landmarks import write_landmarks
 from train.synthetic.lot import draw_lot
 from train.synthetic.paint import Paint, paint_skin

@@ -26,7 +26,7 @@ from skinnet.cli import main as skinnet
 from skinnet.images.photograph import read_photo, srgb_to_linear
 from skinnet.pipeline.calibrate import ColourSettings
 from skinnet.pipeline.maps import invert
-from skinnet.shape.procedural import chart
+from skinnet.shape.procedural_head import chart
 from skinnet.texture.warp import TextureSpace, Warped, warp_texture
 from train.synthetic.lot import CHART
 from train.synthetic.skinfile import save_skins

@@ -10,7 +10,7 @@ from skinnet.appearance.colour import SkinColour
 from skinnet.images.photograph import linear_to_srgb, to_uint8
 from skinnet.mesh.mesh import Mesh
 from skinnet.mesh.mesh_file import write_mesh
-from skinnet.shape.default import default_model
+from skinnet.shape._default_model import default_model
 from skinnet.shape.landmarks import write_landmarks
 
 SIZE = 48

@@ -13,8 +13,8 @@ from skimage.data import astronaut
 
 from benchmarks import disturbances, encoder, portraits, targets
 from benchmarks.baselines import Lookup, Tsumura
-from benchmarks.moments import Moments
 from benchmarks.reader import NetworkReader, composed
+from benchmarks.running_statistics import Moments
 from benchmarks.scene import Pixels, Scene, under_daylight
 from benchmarks.scores import Scores
 from benchmarks.typology import GROUPS, group, typology_angle

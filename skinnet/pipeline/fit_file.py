@@ -9,7 +9,7 @@ import numpy as np
 from skinnet.appearance.model_file import BROKEN
 from skinnet.errors import InputError
 from skinnet.files import atomic
-from skinnet.shape.icp import StageRecord
+from skinnet.shape._icp import StageRecord
 from skinnet.shape.registration import Registration
 from skinnet.shape.similarity import Similarity
 

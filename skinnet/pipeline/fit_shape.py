@@ -24,7 +24,7 @@ from skinnet.pipeline.scans import (
     place,
     scan_options,
 )
-from skinnet.shape.icp import FitSettings
+from skinnet.shape._icp import FitSettings
 from skinnet.shape.model import ShapeModel
 from skinnet.shape.registration import Registration, register
 

@@ -11,9 +11,9 @@ from skinnet.mesh.mesh import Mesh
 from skinnet.render.scene import Scene
 from skinnet.render.views import Orthographic
 from skinnet.render.visibility import GeometryBuffers, geometry
-from skinnet.shape.icp import FitSettings, Stage
+from skinnet.shape._icp import FitSettings, Stage
+from skinnet.shape._scan_points import Surface
 from skinnet.shape.model import ShapeModel
-from skinnet.shape.scan_points import Surface
 from skinnet.shape.similarity import Similarity
 
 PIXELS = 500

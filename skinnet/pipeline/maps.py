@@ -18,7 +18,7 @@ from skinnet.pipeline.fit_shape import Fitted, fitted
 from skinnet.pipeline.maps_output import ENDS, write_maps
 from skinnet.pipeline.progress import digest, finished, say, write_record
 from skinnet.pipeline.scans import add_scan_arguments, each_scan, scan_options
-from skinnet.shape.icp import FitSettings
+from skinnet.shape._icp import FitSettings
 from skinnet.shape.model import ShapeModel
 from skinnet.texture.mirror import mirror_vertices
 from skinnet.texture.projection import NORMAL_LIMIT, project_texture

@@ -14,7 +14,7 @@ from scipy.spatial import cKDTree
 from skinnet.errors import InputError
 from skinnet.files import write_text
 from skinnet.mesh.mesh import Mesh
-from skinnet.shape.landmark_formats import parse_ljson, parse_pp
+from skinnet.shape._landmark_formats import parse_ljson, parse_pp
 from skinnet.shape.model import ShapeModel
 from skinnet.shape.similarity import similarity
 

@@ -11,12 +11,12 @@ import numpy as np
 from skinnet.errors import InputError
 from skinnet.files import BROKEN, atomic
 from skinnet.mesh._mesh_parts import SUFFIXES
-from skinnet.shape.basel import load_basel_2009, load_basel_2017
-from skinnet.shape.default import default_model
-from skinnet.shape.ict import NEUTRAL, ict_from_arrays, load_ict_folder
+from skinnet.shape._basel import load_basel_2009, load_basel_2017
+from skinnet.shape._default_model import default_model
+from skinnet.shape._ict import NEUTRAL, ict_from_arrays, load_ict_folder
 from skinnet.shape.landmarks import read_landmark_vertices
 from skinnet.shape.model import ShapeModel, checked_model
-from skinnet.shape.registered import load_registered
+from skinnet.shape.registered_meshes import load_registered
 
 VERSION = "1"
 """Version of our own layout, under the key `skinnet_shape_model`."""

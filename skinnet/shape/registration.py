@@ -8,11 +8,11 @@ from jaxtyping import Bool, Float
 
 from skinnet.errors import InputError
 from skinnet.mesh.mesh import Mesh
-from skinnet.shape.icp import FitSettings, Stage, StageRecord
+from skinnet.shape._icp import FitSettings, Stage, StageRecord
+from skinnet.shape._moments import gather
+from skinnet.shape._scan_points import Surface
+from skinnet.shape._separable import Separable, solve
 from skinnet.shape.model import ShapeModel
-from skinnet.shape.moments import gather
-from skinnet.shape.scan_points import Surface
-from skinnet.shape.separable import Separable, solve
 from skinnet.shape.similarity import Similarity, similarity
 
 LANDMARK_NOISE = 2.0

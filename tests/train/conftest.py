@@ -12,7 +12,7 @@ from skinnet.appearance.colour import SkinColour
 from skinnet.appearance.maps_file import save_maps
 from skinnet.appearance.subjects import SkinTexture
 from skinnet.mesh.mesh_file import write_mesh
-from skinnet.shape.default import default_model
+from skinnet.shape._default_model import default_model
 from train.batch import Batch
 from train.cli import main
 from train.synthetic.faces import Lots, SyntheticFaces

@@ -5,7 +5,7 @@ from typing import NamedTuple
 import numpy as np
 from jaxtyping import Float
 
-from skinnet.shape.procedural import ROUNDNESS
+from skinnet.shape.procedural_head import ROUNDNESS
 from train.synthetic.labels import HAIR
 from train.synthetic.part import Part, clip, normals, part, sheet
 

@@ -15,7 +15,7 @@ Head = Part
 
 
 def procedural_head(draw: np.random.Generator) -> Head:
-    """A head of `skinnet.shape.procedural`, dressed."""
+    """A head of `skinnet.shape.procedural_head`, dressed."""
     return dressed(*bare_procedural(draw), draw)
 
 

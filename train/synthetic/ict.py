@@ -180,7 +180,7 @@ PLACES: tuple[tuple[tuple[int, ...], tuple[float, float]], ...] = (
 def skin_chart(
     mean: Float[np.ndarray, "vertices 3"], landmarks: Int[np.ndarray, "68"]
 ) -> Float[np.ndarray, "vertices 2"]:
-    """Azimuth and elevation of each vertex on the chart of `skinnet.shape.procedural`.
+    """Azimuth and elevation of each vertex on the chart of `skinnet.shape.procedural_head`.
 
     A thin-plate spline takes the mean's own angles to those at which its features are painted.
     """

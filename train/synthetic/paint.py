@@ -9,7 +9,7 @@ from jaxtyping import Float
 from torch import Tensor
 
 from skinnet.network.autoencoder import F_BLOOD_MAX, F_MEL_MAX
-from skinnet.shape.procedural import chart
+from skinnet.shape.procedural_head import chart
 from train.synthetic.brush import column, soft_step
 from train.synthetic.lot import CHART
 

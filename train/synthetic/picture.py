@@ -11,7 +11,7 @@ from torch import Tensor
 from skinnet.network.autoencoder import SHADING_MAX, SkinMaps
 from skinnet.physics.capture import Capture
 from skinnet.physics.decoder import SkinDecoder
-from skinnet.shape.procedural import CHART, unit
+from skinnet.shape.procedural_head import CHART, unit
 from train.batch import Batch
 from train.synthetic.brush import column, soft_step
 from train.synthetic.camera import photographed, pictured

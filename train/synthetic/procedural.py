@@ -1,10 +1,10 @@
-"""A bald head from `skinnet.shape.procedural` with eyes, mouth and neck."""
+"""A bald head from `skinnet.shape.procedural_head` with eyes, mouth and neck."""
 
 import numpy as np
 import torch
 from jaxtyping import Float
 
-from skinnet.shape.procedural import CHART, IDENTITY, relief
+from skinnet.shape.procedural_head import CHART, IDENTITY, relief
 from train.synthetic.body import Neck
 from train.synthetic.labels import EYE, SKIN, TEETH
 from train.synthetic.part import Part, clipped, joined, part, sheet

@@ -21,8 +21,8 @@ from scipy.ndimage import binary_fill_holes, distance_transform_edt
 from skinnet.appearance.hybrid import HybridModel
 from skinnet.errors import InputError
 from skinnet.pipeline.maps import embedded
-from skinnet.shape.default import default_model
-from skinnet.shape.procedural import chart
+from skinnet.shape._default_model import default_model
+from skinnet.shape.procedural_head import chart
 from train.fitted import shrunk
 from train.synthetic.brush import soft_step
 from train.synthetic.lot import CHART

@@ -31,7 +31,7 @@ def test_models_measures_and_pictures_are_there(model: Path) -> None:
 
 
 def test_a_joint_model_is_built_where_the_shape_model_is_named(maps: Path, tmp_path: Path) -> None:
-    from skinnet.shape.default import default_model
+    from skinnet.shape._default_model import default_model
     from skinnet.shape.model_formats import save_shape_model
 
     save_shape_model(tmp_path / "shape.npz", default_model())

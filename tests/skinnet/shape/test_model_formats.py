@@ -16,11 +16,11 @@ from skinnet.errors import InputError
 from skinnet.mesh._orientation import inside_out, turned
 from skinnet.mesh.mesh import Mesh
 from skinnet.mesh.mesh_file import write_mesh
-from skinnet.shape.default import default_model
+from skinnet.shape._default_model import default_model
 from skinnet.shape.landmarks import IBUG
 from skinnet.shape.model import ShapeModel
 from skinnet.shape.model_formats import load_shape_model, save_shape_model
-from skinnet.shape.registered import from_meshes
+from skinnet.shape.registered_meshes import from_meshes
 
 Writer = Callable[[Path, dict[str, Any]], None]
 

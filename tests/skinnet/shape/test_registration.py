@@ -6,7 +6,7 @@ import pytest
 from benchmarks.fit import big_model, case
 from skinnet.errors import InputError
 from skinnet.mesh.mesh import Mesh
-from skinnet.shape.icp import FitSettings
+from skinnet.shape._icp import FitSettings
 from skinnet.shape.registration import from_landmarks, register
 
 VERTICES, MODES = 1500, 12

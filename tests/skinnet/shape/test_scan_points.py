@@ -4,7 +4,7 @@ import numpy as np
 import trimesh
 
 from skinnet.mesh.mesh import Mesh
-from skinnet.shape.scan_points import DENSE, Surface, spikes
+from skinnet.shape._scan_points import DENSE, Surface, spikes
 from skinnet.shape.similarity import similarity
 
 

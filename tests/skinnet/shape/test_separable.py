@@ -6,8 +6,8 @@ from scipy.optimize import least_squares
 from scipy.spatial.transform import Rotation
 
 from skinnet.errors import InputError
-from skinnet.shape.moments import gather
-from skinnet.shape.separable import Separable, solve
+from skinnet.shape._moments import gather
+from skinnet.shape._separable import Separable, solve
 from skinnet.shape.similarity import Similarity
 
 MODES, VERTICES = 6, 40
@@ -131,7 +131,7 @@ def test_a_vertex_without_weight_changes_nothing():
 
 def test_chunks_change_nothing(monkeypatch):
     problem = Problem(0.0, None)
-    monkeypatch.setattr("skinnet.shape.moments.CHUNK", 7)
+    monkeypatch.setattr("skinnet.shape._moments.CHUNK", 7)
     parts = gather(problem.basis, problem.mean, problem.points, problem.weights)
     np.testing.assert_allclose(parts.design, problem.separable.moments.design, rtol=1e-12)
     np.testing.assert_allclose(parts.cross, problem.separable.moments.cross, rtol=1e-9, atol=1e-9)

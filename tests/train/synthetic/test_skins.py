@@ -14,7 +14,7 @@ from skinnet.appearance.spool import spool
 from skinnet.appearance.subjects import SkinTexture
 from skinnet.errors import InputError
 from skinnet.physics.sources import spectrum_matrix
-from skinnet.shape.procedural import chart
+from skinnet.shape.procedural_head import chart
 from train.synthetic.faces import Lots, SyntheticFaces
 from train.synthetic.lot import CHART, draw_lot
 from train.synthetic.paint import paint_skin

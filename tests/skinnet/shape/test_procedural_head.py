@@ -2,7 +2,7 @@
 
 import torch
 
-from skinnet.shape.procedural import IDENTITY, chart, relief, sample, surface
+from skinnet.shape.procedural_head import IDENTITY, chart, relief, sample, surface
 
 ROWS, COLUMNS = 61, 81
 

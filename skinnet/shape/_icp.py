@@ -7,10 +7,10 @@ from jaxtyping import Bool, Float
 
 from skinnet.errors import InputError
 from skinnet.mesh.normals import smooth_normals
+from skinnet.shape._moments import gather
+from skinnet.shape._scan_points import Nearest, Surface
+from skinnet.shape._separable import Separable, Solution, solve
 from skinnet.shape.model import ShapeModel
-from skinnet.shape.moments import gather
-from skinnet.shape.scan_points import Nearest, Surface
-from skinnet.shape.separable import Separable, Solution, solve
 from skinnet.shape.similarity import Similarity
 
 NEAR = 25.0

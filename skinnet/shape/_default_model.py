@@ -45,7 +45,7 @@ _PLACES = {
 
 @cache
 def default_model() -> ShapeModel:
-    """The procedural face (`skinnet.shape.procedural`) with some 6,000 vertices; made once."""
+    """The procedural face (`skinnet.shape.procedural_head`) with some 6,000 vertices; made once."""
     return procedural_model()
 
 
@@ -87,7 +87,7 @@ def procedural_model(rows: int = 115, columns: int = 153) -> ShapeModel:
 def _axes(
     rows: int, columns: int
 ) -> tuple[Float[np.ndarray, "columns"], Float[np.ndarray, "rows"]]:
-    from skinnet.shape.procedural import chart
+    from skinnet.shape.procedural_head import chart
 
     azimuth, elevation = (axis.double().numpy().ravel() for axis in chart(rows, columns))
     return (azimuth - azimuth[::-1]) / 2, elevation
@@ -156,7 +156,7 @@ def _drawn(half: Bool[np.ndarray, "rows half"]) -> Float[np.ndarray, "draws vert
     """Radius of drawn faces at the places chosen from the chart's right half and middle column."""
     import torch
 
-    from skinnet.shape.procedural import IDENTITY, relief
+    from skinnet.shape.procedural_head import IDENTITY, relief
 
     lot = torch.Generator().manual_seed(0)
     numbers = torch.randn(DRAWS // 2, IDENTITY, generator=lot, dtype=torch.float64)

@@ -10,7 +10,7 @@ from scipy.linalg import cho_factor, cho_solve
 from scipy.spatial.transform import Rotation
 
 from skinnet.errors import InputError
-from skinnet.shape.moments import Moments
+from skinnet.shape._moments import Moments
 from skinnet.shape.similarity import Similarity
 
 ITERATIONS = 60

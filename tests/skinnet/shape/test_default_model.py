@@ -7,9 +7,9 @@ import torch
 from skinnet.errors import InputError
 from skinnet.mesh._orientation import face_components, inside_out
 from skinnet.mesh._topology import boundary_loops
-from skinnet.shape.default import MODES, default_model, procedural_model
+from skinnet.shape._default_model import MODES, default_model, procedural_model
 from skinnet.shape.landmarks import IBUG
-from skinnet.shape.procedural import CHART, IDENTITY, relief
+from skinnet.shape.procedural_head import CHART, IDENTITY, relief
 
 
 def mirrored() -> np.ndarray:
