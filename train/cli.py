@@ -5,7 +5,7 @@ import sys
 import warnings
 from collections.abc import Sequence
 from pathlib import Path
-from typing import Any, NoReturn
+from typing import Any
 
 from lightning import Callback, LightningDataModule, Trainer
 from lightning.pytorch.callbacks import (
@@ -20,6 +20,7 @@ from lightning.pytorch.utilities.exceptions import MisconfigurationException
 
 from skinnet.errors import InputError
 from skinnet.network.checkpoint import read_checkpoint
+from skinnet.pipeline.sentence_parser import SentenceParser
 from train.callbacks import LastCheckpoint, PictureGrid
 from train.fitted import FittedFaces
 from train.guards import FiniteGuard
@@ -31,12 +32,10 @@ from train.task import SkinTask
 __all__ = ["FittedFaces", "Portraits", "SkinCLI", "SyntheticFaces", "main"]
 
 
-class SentenceParser(LightningArgumentParser):
-    """Says what is wrong in one sentence, without the usage of several hundred options."""
+class _TrainParser(SentenceParser, LightningArgumentParser):
+    """Lightning's parser with errors in one sentence."""
 
-    def error(self, message: str, ex: Exception | None = None) -> NoReturn:
-        said = " ".join(message.split())
-        raise InputError(f"{said} (python -m train fit --help lists what there is)") from ex
+    help_command = "python -m train fit --help"
 
 
 class SkinCLI(LightningCLI):
@@ -154,7 +153,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
                 LightningDataModule,
                 subclass_mode_data=True,
                 seed_everything_default=0,
-                parser_class=SentenceParser,
+                parser_class=_TrainParser,
                 save_config_kwargs={"overwrite": True},
                 args=list(arguments) if arguments is not None else None,
                 parser_kwargs={"prog": "python -m train"},

@@ -3,20 +3,12 @@
 from collections.abc import Sequence
 from importlib import import_module
 from pathlib import Path
-from typing import Any, NoReturn
+from typing import Any
 
 from jsonargparse import ArgumentParser, Namespace
 
-from skinnet.errors import InputError
 from skinnet.files import made
-
-
-class SentenceParser(ArgumentParser):
-    """Says what is wrong in one sentence, without the usage of all options."""
-
-    def error(self, message: str, ex: Exception | None = None) -> NoReturn:
-        said = " ".join(message.split())
-        raise InputError(f"{said} ({self.prog} --help lists what there is)") from ex
+from skinnet.pipeline.sentence_parser import SentenceParser
 
 
 def run(verb: str, arguments: Sequence[str], help_: str) -> int:

@@ -1,0 +1,42 @@
+"""The parser of every command that takes settings from YAML and flags."""
+
+import re
+from collections.abc import Mapping
+from typing import NoReturn
+
+from jsonargparse import ArgumentParser
+
+from skinnet.errors import InputError
+
+
+class SentenceParser(ArgumentParser):
+    """Reports an error in one sentence, without the usage of all options.
+
+    `help_command` lists the options; by default it is the parser's program with `--help`.
+    `renamed` maps keys and class names of earlier versions to those of today. An error about an old
+    one then names the new one.
+
+    Raises:
+        InputError: instead of a message on standard error and the end of the process.
+
+    Example:
+        >>> parser = SentenceParser(prog="skinnet maps")
+        >>> parser.renamed = {"colour": "color"}
+        >>> parser.parse_args(["--colour=red"])
+        Traceback (most recent call last):
+        ...
+        skinnet.errors.InputError: 'colour' is now called 'color'; use the new name.
+    """
+
+    help_command: str | None = None
+    renamed: Mapping[str, str] = {}
+
+    def error(self, message: str, ex: Exception | None = None) -> NoReturn:
+        """Raise `InputError` with the message on one line."""
+        for old, new in self.renamed.items():
+            # A key stands after a quote, dashes or a colon, perhaps as the end of a longer path.
+            if re.search(rf"""(?:['"]|--|: )(?:\w+\.)*{re.escape(old)}(?=[.'"=\s]|$)""", message):
+                raise InputError(f"'{old}' is now called '{new}'; use the new name.") from ex
+        sentence = " ".join(message.split())
+        help_command = self.help_command or f"{self.prog} --help"
+        raise InputError(f"{sentence} ({help_command} lists the options)") from ex
