@@ -13,7 +13,7 @@ from PIL import Image, PngImagePlugin
 
 from skinnet.errors import InputError
 from skinnet.files import BROKEN, atomic
-from skinnet.images.decode import to_srgb
+from skinnet.images._decode import to_srgb
 
 MAX_PIXELS = 100_000_000
 """Largest photograph that is decoded; the arrays of one such take some 4 GB."""

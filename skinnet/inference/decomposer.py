@@ -12,10 +12,10 @@ from PIL import Image
 from skinnet.errors import InputError, NoFaceError
 from skinnet.images.faces import Box, crop_box, find_face, resize
 from skinnet.images.photograph import as_photo, srgb_to_linear, to_uint8
-from skinnet.inference.colour_table import tabulate
+from skinnet.inference._editing import apply_gain, colour_gain, edge_fade
 from skinnet.inference.decomposition import Decomposition
-from skinnet.inference.editing import apply_gain, colour_gain, edge_fade
-from skinnet.inference.full_resolution.layers import Layers, sharpen
+from skinnet.inference.full_resolution._colour_table import tabulate
+from skinnet.inference.full_resolution._layers import Layers, sharpen
 from skinnet.inference.onnx_model import (
     GLOBALS,
     MAPS,

@@ -9,7 +9,7 @@ from PIL import Image
 
 from skinnet.errors import InputError
 from skinnet.files import BROKEN
-from skinnet.images.decode import to_srgb
+from skinnet.images._decode import to_srgb
 from skinnet.images.photograph import FORMATS, MAX_PIXELS, SUFFIXES
 
 Texture = UInt8[np.ndarray, "_ _ 3"]

@@ -13,7 +13,7 @@ from skinnet import Decomposer, Decomposition, __version__
 from skinnet.errors import InputError, NoFaceError
 from skinnet.images.faces import Box
 from skinnet.images.photograph import srgb_to_linear
-from skinnet.inference.editing import apply_gain, colour_gain, edge_fade
+from skinnet.inference._editing import apply_gain, colour_gain, edge_fade
 from skinnet.inference.onnx_model import open_model
 from skinnet.inference.panel import panel, round_top
 

@@ -15,10 +15,10 @@ from scipy import ndimage
 from skinnet import Decomposer, SkinDecoder
 from skinnet.images.faces import resize
 from skinnet.images.photograph import linear_to_srgb, srgb_to_linear, to_uint8
-from skinnet.inference.colour_table import ColourTable, tabulate
-from skinnet.inference.full_resolution import layers as full_size
-from skinnet.inference.full_resolution.detail import octaves, pigment_detail
-from skinnet.inference.full_resolution.layers import Layers, sharpen
+from skinnet.inference.full_resolution import _layers as full_size
+from skinnet.inference.full_resolution._colour_table import ColourTable, tabulate
+from skinnet.inference.full_resolution._detail import octaves, pigment_detail
+from skinnet.inference.full_resolution._layers import Layers, sharpen
 from skinnet.inference.onnx_model import decoder_path, open_model, shipped_model
 
 SIZE, SMALL, TOP = 480, 40, (0.43, 0.15)

@@ -18,8 +18,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy import ndimage
 
-from skinnet.inference.colour_table import ColourTable
-from skinnet.inference.full_resolution.chromaticity import (
+from skinnet.inference.full_resolution._chromaticity import (
     Image,
     Seen,
     Size,
@@ -30,6 +29,7 @@ from skinnet.inference.full_resolution.chromaticity import (
     sized,
     spread,
 )
+from skinnet.inference.full_resolution._colour_table import ColourTable
 
 SPREAD = (0.3, 0.1)
 """Standard deviation of an octave of melanin and of the root of hemoglobin, relative to the

@@ -10,9 +10,9 @@ from numpy.typing import NDArray
 
 from skinnet.images.faces import resize
 from skinnet.images.photograph import linear_to_srgb, srgb_to_linear, to_uint8
-from skinnet.inference.colour_table import ColourTable
-from skinnet.inference.full_resolution.chromaticity import soft_mask
-from skinnet.inference.full_resolution.detail import pigment_detail
+from skinnet.inference.full_resolution._chromaticity import soft_mask
+from skinnet.inference.full_resolution._colour_table import ColourTable
+from skinnet.inference.full_resolution._detail import pigment_detail
 
 LUMINANCE = (0.2126, 0.7152, 0.0722)
 """Shares of linear sRGB in luminance (IEC 61966-2-1)."""

@@ -10,7 +10,7 @@ from scipy import ndimage
 
 from skinnet.images.faces import resize
 from skinnet.images.photograph import srgb_to_linear
-from skinnet.inference.editing import UNTOUCHED, WHOLLY
+from skinnet.inference._editing import UNTOUCHED, WHOLLY
 
 QUANTISED = 0.0015
 """Least noise of log chromaticity at half size, from 8 bits."""
