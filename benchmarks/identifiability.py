@@ -23,8 +23,14 @@ from benchmarks.report import Results, main
 from skinnet.physics.camera import SpectralCamera
 from skinnet.physics.capture import Capture
 from skinnet.physics.decoder import SkinDecoder
-from train.synthetic.camera import pictured, toned
-from train.synthetic.lot import HEMOGLOBIN, MELANIN, draw_camera, draw_light, draw_regions
+from train.synthetic.scene_sampling import (
+    HEMOGLOBIN,
+    MELANIN,
+    draw_camera,
+    draw_light,
+    draw_regions,
+)
+from train.synthetic.simulated_camera import pictured, toned
 
 DRAWN, SCORED, STEPS, BATCH = 70_000, 10_000, 1500, 4096
 GLOSS = 0.032, 0.38

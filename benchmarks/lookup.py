@@ -24,8 +24,8 @@ from skinnet.physics.lookup import SkinLookup
 from skinnet.physics.nearest_colour import NearestNode
 from skinnet.physics.reflectance import SkinReflectance
 from skinnet.physics.sources import spectrum_matrix
-from train.synthetic.lot import draw_lot
-from train.synthetic.paint import Paint, paint_skin
+from train.synthetic.face_painting import Paint, paint_skin
+from train.synthetic.scene_sampling import draw_lot
 
 SIZE, NODES, ROUNDS, REPEATS = 1024, 256, 2, 3
 WORKERS = 2

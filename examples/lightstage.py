@@ -26,8 +26,8 @@ from skinnet.mesh.mesh_file import write_mesh
 from skinnet.physics.sources import spectrum_matrix
 from skinnet.shape._default_model import default_model
 from skinnet.shape.landmarks import write_landmarks
-from train.synthetic.lot import draw_lot
-from train.synthetic.paint import Paint, paint_skin
+from train.synthetic.face_painting import Paint, paint_skin
+from train.synthetic.scene_sampling import draw_lot
 
 LIGHT, CAMERA = "LED-B3", "Nikon D200"
 FILTER = np.array([[0.80, 0.05, 0.01], [0.03, 0.86, 0.04], [0.01, 0.06, 0.92]])

@@ -28,8 +28,8 @@ from skinnet.pipeline.calibrate import ColourSettings
 from skinnet.pipeline.maps import invert
 from skinnet.shape.procedural_head import chart
 from skinnet.texture.warp import TextureSpace, Warped, warp_texture
-from train.synthetic.lot import CHART
-from train.synthetic.skinfile import save_skins
+from train.synthetic.model_skins import save_skins
+from train.synthetic.scene_sampling import CHART
 from train.synthetic.skins import Place, draw_skins
 
 SIZE = 512

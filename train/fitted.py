@@ -25,13 +25,13 @@ from skinnet.render.views import front
 from skinnet.render.visibility import geometry
 from train.batch import Batch
 from train.stream import StreamLoader, seen_samples
-from train.synthetic.cache import SPLITS
-from train.synthetic.camera import pictured
 from train.synthetic.faces import Drawn
-from train.synthetic.light import shade
-from train.synthetic.lot import draw_camera, draw_gloss, draw_light
-from train.synthetic.picture import Skin, developed, normals, openness
-from train.synthetic.views import facing
+from train.synthetic.head_cache import SPLITS
+from train.synthetic.head_cast import facing
+from train.synthetic.renderer import Skin, developed, normals, openness
+from train.synthetic.scene_sampling import draw_camera, draw_gloss, draw_light
+from train.synthetic.shading import shade
+from train.synthetic.simulated_camera import pictured
 
 MAPS = "_maps.npz"
 TURN, TILT, FIELD = 25.0, 8.0, 24.0
@@ -43,7 +43,7 @@ OIL = 1.0
 
 class View(NamedTuple):
     """What a camera sees of one face, [size, size, ...]: `hit` is 1 where there is any of it, `uv`
-    as `grid_sample` counts it, and the rest as in `train.synthetic.views.Buffers`."""
+    as `grid_sample` counts it, and the rest as in `train.synthetic.head_cast.Buffers`."""
 
     hit: NDArray[np.float32]
     uv: NDArray[np.float32]

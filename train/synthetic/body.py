@@ -5,8 +5,8 @@ from typing import NamedTuple
 import numpy as np
 from jaxtyping import Float
 
+from train.synthetic.labelled_mesh import Part, joined, part, sheet
 from train.synthetic.labels import CLOTH, SKIN
-from train.synthetic.part import Part, joined, part, sheet
 
 TURNS, STEPS = 97, 48
 BOTTOM = -3.6

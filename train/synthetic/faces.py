@@ -14,11 +14,11 @@ from torch.utils.data import DataLoader, Dataset
 from skinnet.physics.decoder import SkinDecoder
 from train.batch import Batch
 from train.stream import StreamLoader, seen_samples
-from train.synthetic.cache import SPLITS, geometry
-from train.synthetic.lot import draw_lot
-from train.synthetic.picture import render
-from train.synthetic.skinfile import Skins, draw_skin, load_skins
-from train.synthetic.views import Buffers
+from train.synthetic.head_cache import SPLITS, geometry
+from train.synthetic.head_cast import Buffers
+from train.synthetic.model_skins import Skins, draw_skin, load_skins
+from train.synthetic.renderer import render
+from train.synthetic.scene_sampling import draw_lot
 
 STAGES = {"fit": ("train", "val"), "validate": ("val",), "test": ("test",)}
 """Splits whose heads a stage of training needs."""

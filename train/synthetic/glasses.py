@@ -3,8 +3,8 @@
 import numpy as np
 from jaxtyping import Float
 
+from train.synthetic.labelled_mesh import Part, at, joined, part, sheet
 from train.synthetic.labels import GLASSES
-from train.synthetic.part import Part, at, joined, part, sheet
 
 AROUND = 9
 

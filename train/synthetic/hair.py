@@ -6,8 +6,8 @@ import numpy as np
 from jaxtyping import Float
 
 from skinnet.shape.procedural_head import ROUNDNESS
+from train.synthetic.labelled_mesh import Part, clip, normals, part, sheet
 from train.synthetic.labels import HAIR
-from train.synthetic.part import Part, clip, normals, part, sheet
 
 ROOT = -0.003
 """Hair starts a little under the skin, in half heads, so that no light falls between."""

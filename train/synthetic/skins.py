@@ -24,10 +24,10 @@ from skinnet.pipeline.maps import embedded
 from skinnet.shape._default_model import default_model
 from skinnet.shape.procedural_head import chart
 from train.fitted import shrunk
-from train.synthetic.brush import soft_step
-from train.synthetic.lot import CHART
-from train.synthetic.paint import beard
-from train.synthetic.skinfile import Skins, save_skins
+from train.synthetic.face_painting import beard
+from train.synthetic.model_skins import Skins, save_skins
+from train.synthetic.scene_sampling import CHART
+from train.synthetic.tensors import soft_step
 
 Chart = Float[np.ndarray, "rows columns"]
 Charts = Float[np.ndarray, "*samples rows columns"]

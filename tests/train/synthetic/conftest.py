@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from train.synthetic.heads import Head, ict_head, procedural_head
-from train.synthetic.ict import IctHead, load_ict_head
+from train.synthetic.ict_model import IctHead, load_ict_head
 
 
 @pytest.fixture(scope="session")

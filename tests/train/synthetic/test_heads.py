@@ -7,9 +7,9 @@ import pytest
 
 from skinnet.errors import InputError
 from train.synthetic.heads import Head, ict_head, procedural_head
-from train.synthetic.ict import PLACES, SHAPES, IctHead, load_ict_head
+from train.synthetic.ict_model import PLACES, SHAPES, IctHead, load_ict_head
+from train.synthetic.labelled_mesh import at, mirrored, only
 from train.synthetic.labels import CLOTH, EYE, HAIR, MOUTH, SKIN, TEETH
-from train.synthetic.part import at, mirrored, only
 
 
 def test_a_procedural_head_has_its_parts(head: Head) -> None:

@@ -15,10 +15,10 @@ from skinnet.appearance.subjects import SkinTexture
 from skinnet.errors import InputError
 from skinnet.physics.sources import spectrum_matrix
 from skinnet.shape.procedural_head import chart
+from train.synthetic.face_painting import paint_skin
 from train.synthetic.faces import Lots, SyntheticFaces
-from train.synthetic.lot import CHART, draw_lot
-from train.synthetic.paint import paint_skin
-from train.synthetic.skinfile import Skins, load_skins, save_skins
+from train.synthetic.model_skins import Skins, load_skins, save_skins
+from train.synthetic.scene_sampling import CHART, draw_lot
 from train.synthetic.skins import bare, draw_skins, filled, main, procedural_place
 
 SIZE = 64

@@ -13,7 +13,7 @@ from skinnet.physics.camera import SpectralCamera, spectrum_to_srgb
 from skinnet.physics.capture import Capture
 from skinnet.physics.decoder import srgb
 from skinnet.physics.spectra import cameras
-from train.synthetic.brush import column
+from train.synthetic.tensors import column
 
 HELD_OUT = 10
 """Cameras that only the test split uses."""

@@ -10,8 +10,8 @@ from torch import Tensor
 
 from skinnet.network.autoencoder import F_BLOOD_MAX, F_MEL_MAX
 from skinnet.shape.procedural_head import chart
-from train.synthetic.brush import column, soft_step
-from train.synthetic.lot import CHART
+from train.synthetic.scene_sampling import CHART
+from train.synthetic.tensors import column, soft_step
 
 Chart = Float[Tensor, "batch channels rows columns"]
 

@@ -9,7 +9,7 @@ from jaxtyping import Float16
 
 from skinnet.errors import InputError
 from skinnet.files import atomic
-from train.synthetic.lot import CHART, Lot
+from train.synthetic.scene_sampling import CHART, Lot
 
 WORN = 0.5
 """Share of the pictures that wear a skin, where there are any."""

@@ -15,11 +15,11 @@ from skinnet.physics.camera import SpectralCamera
 from skinnet.physics.decoder import SkinDecoder, srgb
 from skinnet.physics.spectra import cameras
 from train.batch import Batch
-from train.synthetic import camera
+from train.synthetic import simulated_camera as camera
+from train.synthetic.face_painting import paint_skin
 from train.synthetic.faces import Lots, SyntheticFaces
-from train.synthetic.light import shade
-from train.synthetic.lot import MELANIN, WIDE_MELANIN, draw_lot
-from train.synthetic.paint import paint_skin
+from train.synthetic.scene_sampling import MELANIN, WIDE_MELANIN, draw_lot
+from train.synthetic.shading import shade
 
 COUNT = 6
 PLAIN = {"blur": 0.05, "noise": 0.0, "quality": 0.0, "tone": 0.0, "flip": 0.0}

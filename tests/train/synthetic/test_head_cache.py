@@ -6,10 +6,10 @@ import numpy as np
 import pytest
 
 from skinnet.errors import InputError
-from train.synthetic import cache
+from train.synthetic import head_cache as cache
+from train.synthetic.head_cast import Buffers
+from train.synthetic.labelled_mesh import part, sheet
 from train.synthetic.labels import SKIN
-from train.synthetic.part import part, sheet
-from train.synthetic.views import Buffers
 
 SIZE = 12
 

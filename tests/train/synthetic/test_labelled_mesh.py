@@ -4,8 +4,8 @@ import numpy as np
 import pytest
 
 from skinnet.mesh._topology import boundary
+from train.synthetic.labelled_mesh import Part, clipped, joined, mirrored, part, sheet
 from train.synthetic.labels import EYE, SKIN
-from train.synthetic.part import Part, clipped, joined, mirrored, part, sheet
 
 
 @pytest.fixture

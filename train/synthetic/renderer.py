@@ -13,11 +13,11 @@ from skinnet.physics.capture import Capture
 from skinnet.physics.decoder import SkinDecoder
 from skinnet.shape.procedural_head import CHART, unit
 from train.batch import Batch
-from train.synthetic.brush import column, soft_step
-from train.synthetic.camera import photographed, pictured
+from train.synthetic.face_painting import Paint, enlarged, paint_skin
 from train.synthetic.labels import CLOTH, EYE, GLASSES, HAIR, MOUTH, SKIN, TEETH
-from train.synthetic.light import Shade, shade
-from train.synthetic.paint import Paint, enlarged, paint_skin
+from train.synthetic.shading import Shade, shade
+from train.synthetic.simulated_camera import photographed, pictured
+from train.synthetic.tensors import column, soft_step
 
 METERED = 0.25
 """Mean luminance of skin that a camera which meters for it would choose."""

@@ -6,8 +6,8 @@ from jaxtyping import Float
 
 from skinnet.shape.procedural_head import CHART, IDENTITY, relief
 from train.synthetic.body import Neck
+from train.synthetic.labelled_mesh import Part, clipped, joined, part, sheet
 from train.synthetic.labels import EYE, SKIN, TEETH
-from train.synthetic.part import Part, clipped, joined, part, sheet
 
 ROWS, COLUMNS, BACK = 168, 204, 24
 EYE_AT, EYE_WIDE, IRIS = (0.34, 0.02), 0.135, 0.055

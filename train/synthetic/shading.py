@@ -6,8 +6,8 @@ import torch
 from jaxtyping import Float, Int
 from torch import Tensor
 
-from train.synthetic.brush import column
 from train.synthetic.directions import DIRECTIONS
+from train.synthetic.tensors import column
 
 NEAREST = 5
 """Directions that stand for one lamp: an area, so that shadows have soft edges."""

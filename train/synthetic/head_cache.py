@@ -13,9 +13,9 @@ from zipfile import BadZipFile
 import numpy as np
 
 from skinnet.files import atomic, made
+from train.synthetic.head_cast import Buffers, cast
 from train.synthetic.heads import ict_head, procedural_head
-from train.synthetic.ict import IctHead, load_ict_head
-from train.synthetic.views import Buffers, cast
+from train.synthetic.ict_model import IctHead, load_ict_head
 
 VERSION = 1
 """Raise it with every change to what heads or their casts are; older files are then built anew."""

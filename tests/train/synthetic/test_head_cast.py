@@ -8,10 +8,10 @@ from skinnet.render.scene import Scene
 from skinnet.render.views import Orthographic
 from skinnet.render.visibility import geometry
 from train.synthetic.directions import DIRECTIONS, LOWEST
+from train.synthetic.head_cast import Buffers, buffers, cast
 from train.synthetic.heads import Head
+from train.synthetic.labelled_mesh import Part, joined, mirrored, part, sheet
 from train.synthetic.labels import BACKGROUND, SKIN
-from train.synthetic.part import Part, joined, mirrored, part, sheet
-from train.synthetic.views import Buffers, buffers, cast
 
 SIZE = 40
 

@@ -11,8 +11,8 @@ from scipy.interpolate import RBFInterpolator
 from skinnet.errors import InputError
 from train.synthetic.body import Neck
 from train.synthetic.expression import expression
+from train.synthetic.labelled_mesh import Part, clipped, joined, part
 from train.synthetic.labels import EYE, MOUTH, SKIN, TEETH
-from train.synthetic.part import Part, clipped, joined, part
 
 SCALE, MIDDLE = 11.0, (0.0, 3.5, 0.0)
 """Centimetres in half a head, and the point between the ears at the height of the eyes."""
@@ -162,7 +162,7 @@ def _neck(skin: Part) -> Neck:
 
 
 # Landmarks of the mean (numbers of iBUG's 68 on the face's left, or several whose middle is meant)
-# and where `train.synthetic.paint` paints them: azimuth, elevation.
+# and where `train.synthetic.face_painting` paints them: azimuth, elevation.
 PLACES: tuple[tuple[tuple[int, ...], tuple[float, float]], ...] = (
     ((42,), (0.205, 0.012)), ((45,), (0.475, 0.028)), ((43,), (0.295, 0.060)),
     ((44,), (0.385, 0.062)), ((46,), (0.385, -0.018)), ((47,), (0.295, -0.018)),
