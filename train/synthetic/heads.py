@@ -3,13 +3,13 @@
 import numpy as np
 from jaxtyping import Float
 
+from train.synthetic.bald_procedural import bare_procedural
 from train.synthetic.body import Neck, bust
 from train.synthetic.glasses import glasses
 from train.synthetic.hair import cap, curtain, draw_cut
 from train.synthetic.ict_model import IctHead, bare_ict
 from train.synthetic.labelled_mesh import Part, joined, mirrored, only
 from train.synthetic.labels import EYE, SKIN
-from train.synthetic.procedural_head import bare_procedural
 
 Head = Part
 
