@@ -25,9 +25,9 @@ from skinnet.appearance.colour import SkinColour
 from skinnet.appearance.hybrid import HybridModel
 from skinnet.appearance.linear import LinearModel
 from skinnet.appearance.measures import measure
-from skinnet.appearance.spool import spool
+from skinnet.appearance.skin_texture import SkinTexture
 from skinnet.appearance.stack import SubjectStack, open_stack
-from skinnet.appearance.subjects import SkinTexture
+from skinnet.appearance.stack_writer import write_stack
 
 PEOPLE, SIZE = 25, 1024
 MANY, SMALL = 200, 512
@@ -64,7 +64,7 @@ def _noise(
 def people(folder: Path, count: int, size: int) -> SubjectStack:
     """A stack of persons."""
     makers = {f"person {seed}": partial(person, size, seed) for seed in range(count)}
-    return spool(folder, makers, SkinColour(), "synthetic people")
+    return write_stack(folder, makers, SkinColour(), "synthetic people")
 
 
 def study(folder: str, measured: bool) -> Results:

@@ -15,7 +15,7 @@ from torch.utils.data import DataLoader, Dataset
 
 from skinnet.appearance.hybrid import HybridModel
 from skinnet.appearance.maps_file import load_maps
-from skinnet.appearance.subjects import SkinTexture
+from skinnet.appearance.skin_texture import SkinTexture
 from skinnet.errors import InputError
 from skinnet.mesh.mesh_file import read_mesh
 from skinnet.network.autoencoder import F_BLOOD_MAX, F_MEL_MAX

@@ -76,7 +76,7 @@ class SkinColour(nn.Module):
         decoded: Float32[np.ndarray, "*batch 3 texels"] = self(torch.from_numpy(features)).numpy()
         return decoded
 
-    def record(self) -> dict[str, Any]:
+    def to_record(self) -> dict[str, Any]:
         """What JSON can hold of it, for `from_record`."""
         return {
             "optics": self.optics,

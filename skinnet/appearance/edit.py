@@ -5,7 +5,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 from jaxtyping import Float, Float32
 
-from skinnet.appearance.subjects import SkinTexture
+from skinnet.appearance.skin_texture import SkinTexture
 from skinnet.errors import InputError
 
 LARGEST = 10.0
@@ -48,7 +48,7 @@ class PigmentEdit:
         return np.asarray((self.scale * fraction + self.add).clip(0, 1), np.float32)
 
 
-def edited(
+def edit_texture(
     texture: SkinTexture,
     melanin: PigmentEdit,
     hemoglobin: PigmentEdit,

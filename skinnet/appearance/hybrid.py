@@ -7,14 +7,14 @@ import torch
 from jaxtyping import Bool, Float, Float32
 from torch import Tensor
 
+from skinnet.appearance._decoded_errors import compute_decoded_errors, subsample
+from skinnet.appearance._feature_blocks import FeatureBlocks
+from skinnet.appearance._mixtures import Errors
+from skinnet.appearance._model import AppearanceModel
+from skinnet.appearance._scales import equal_variance
 from skinnet.appearance.colour import CHANNELS, outside
-from skinnet.appearance.columns import Columns
-from skinnet.appearance.decoded import decoded_errors, thinned
-from skinnet.appearance.mixtures import Errors
-from skinnet.appearance.model import AppearanceModel
-from skinnet.appearance.scales import equal_variance
+from skinnet.appearance.skin_texture import SkinTexture
 from skinnet.appearance.stack import SubjectStack
-from skinnet.appearance.subjects import SkinTexture
 
 
 class HybridModel(AppearanceModel):
@@ -29,8 +29,10 @@ class HybridModel(AppearanceModel):
     """
 
     @classmethod
-    def columns(cls, stack: SubjectStack, mask: Bool[np.ndarray, "rows columns"]) -> Columns:
-        return stack.columns(mask)
+    def read_blocks(
+        cls, stack: SubjectStack, mask: Bool[np.ndarray, "rows columns"]
+    ) -> FeatureBlocks:
+        return stack.read_blocks(mask)
 
     @classmethod
     def default_scales(
@@ -53,8 +55,8 @@ class HybridModel(AppearanceModel):
         grams: Float[np.ndarray, "channels subjects subjects"],
         texels: int | None,
     ) -> Errors:
-        columns = self.columns(stack, thinned(self.mask, texels))
-        return partial(decoded_errors, columns, self.colour.decode)
+        columns = self.read_blocks(stack, subsample(self.mask, texels))
+        return partial(compute_decoded_errors, columns, self.colour.decode)
 
     @torch.no_grad()
     def texture(self, beta: Float[np.ndarray, "components"], name: str = "face") -> SkinTexture:

@@ -7,12 +7,12 @@ import torch
 from jaxtyping import Float
 from torch import Tensor, nn
 
-from skinnet.appearance import model_file
-from skinnet.appearance.columns import ArrayColumns
-from skinnet.appearance.principal import (
+from skinnet.appearance import _model_arrays
+from skinnet.appearance._feature_blocks import ArrayBlocks
+from skinnet.appearance._principal import (
     PrincipalComponents,
-    channel_grams,
-    principal_components,
+    compute_components,
+    compute_grams,
 )
 from skinnet.errors import InputError
 
@@ -73,9 +73,9 @@ class JointModel(nn.Module):
             raise InputError(
                 f"The weight of shape is {weight:g}; give one above 0, and shapes that differ."
             )
-        rows = ArrayColumns(np.concatenate([weight * alphas / deviations, betas], 1))
+        rows = ArrayBlocks(np.concatenate([weight * alphas / deviations, betas], 1))
         one = np.ones(1)
-        statistics = principal_components(rows, channel_grams(rows), one, components)
+        statistics = compute_components(rows, compute_grams(rows), one, components)
         return cls(statistics, deviations, weight)
 
     @property
@@ -86,7 +86,7 @@ class JointModel(nn.Module):
     def forward(
         self, gamma: Float[Tensor, "*batch components"]
     ) -> tuple[Float[Tensor, "*batch modes"], Float[Tensor, "*batch appearance"]]:
-        """alpha and beta of joint coefficients."""
+        """Alpha and beta of joint coefficients."""
         both = (self.mean + gamma @ self.basis) * self.units
         return both[..., : len(self.deviations)], both[..., len(self.deviations) :]
 
@@ -101,7 +101,7 @@ class JointModel(nn.Module):
     def reconstruct(
         self, gamma: Float[np.ndarray, "components"]
     ) -> tuple[Float[np.ndarray, "modes"], Float[np.ndarray, "appearance"]]:
-        """alpha and beta of joint coefficients, for arrays."""
+        """Alpha and beta of joint coefficients, for arrays."""
         alpha, beta = self(torch.from_numpy(gamma).to(self.mean))
         return alpha.numpy(force=True), beta.numpy(force=True)
 
@@ -113,23 +113,23 @@ class JointModel(nn.Module):
         """Write the model as .npz, whole or not at all. Raises `InputError` for another suffix."""
         found = self.statistics
         header = {"weight": self.weight, "total": found.total, "subjects": found.subjects}
-        arrays = {name: getattr(found, name) for name in model_file.STATISTICS}
+        arrays = {name: getattr(found, name) for name in _model_arrays.STATISTICS}
         arrays["deviations"] = self.deviations
-        model_file.write(path, type(self).__name__, header, arrays)
+        _model_arrays.write_arrays(path, type(self).__name__, header, arrays)
 
     @classmethod
     def load(cls, path: Path) -> "JointModel":
         """Read a model. Raises `InputError` for a file that is missing, damaged or another's."""
-        names = (*model_file.STATISTICS, "deviations")
-        header, arrays = model_file.read(path, cls.__name__, names)
-        statistics = model_file.as_statistics(path, header, arrays)
+        names = (*_model_arrays.STATISTICS, "deviations")
+        header, arrays = _model_arrays.read_arrays(path, cls.__name__, names)
+        statistics = _model_arrays.build_statistics(path, header, arrays)
         deviations = arrays["deviations"]
         if deviations.ndim != 1 or len(deviations) > len(statistics.mean.T):
-            raise model_file.damaged(path)
+            raise _model_arrays.make_damage_error(path)
         try:
             return cls(statistics, deviations, float(header["weight"]))
-        except model_file.BROKEN as error:
-            raise model_file.damaged(path) from error
+        except _model_arrays.READ_ERRORS as error:
+            raise _model_arrays.make_damage_error(path) from error
 
 
 def equal_weight(

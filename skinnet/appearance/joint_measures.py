@@ -5,6 +5,22 @@ from functools import partial
 import numpy as np
 from jaxtyping import Float, Int
 
+from skinnet.appearance._mixtures import (
+    LeftOut,
+    errors,
+    leave_out,
+    project_left_out,
+    reconstruct_subjects,
+    weigh_samples,
+)
+from skinnet.appearance._model import AppearanceModel
+from skinnet.appearance._principal import (
+    Axes,
+    combine_grams,
+    compute_axes,
+    compute_grams,
+    sample_normal,
+)
 from skinnet.appearance.joint import JointModel
 from skinnet.appearance.measures import (
     TEXELS,
@@ -14,16 +30,6 @@ from skinnet.appearance.measures import (
     generalisation,
     specificity,
 )
-from skinnet.appearance.mixtures import (
-    LeftOut,
-    draws_as_weights,
-    errors,
-    left_out,
-    projections,
-    reproductions,
-)
-from skinnet.appearance.model import AppearanceModel
-from skinnet.appearance.principal import Axes, channel_grams, draws, principal_axes, scaled_gram
 from skinnet.appearance.stack import SubjectStack
 from skinnet.errors import InputError
 from skinnet.shape.model import ShapeModel
@@ -46,24 +52,26 @@ def measure_joint(
     Each model of the others has an appearance model of the others inside, with as many components
     as `appearance`. Everything else is as for `measure`.
     """
-    grams = channel_grams(appearance.columns(stack, appearance.mask))
-    gram = scaled_gram(grams, appearance.statistics.scales)
+    grams = compute_grams(appearance.read_blocks(stack, appearance.mask))
+    gram = combine_grams(grams, appearance.statistics.scales)
     _check(joint, shape, alphas, len(gram))
     surface = _centred_gram(joint.weight * alphas / joint.deviations)
     counts = check_counts(counts, len(joint.statistics.variances), len(gram))
     kept = len(appearance.statistics.variances)
-    axes = principal_axes(gram, kept)
+    axes = compute_axes(gram, kept)
     whole = surface + _truncated(axes)
-    drawn = draws_as_weights(whole, draws(samples, len(joint.statistics.variances), seed), counts)
+    drawn = weigh_samples(
+        whole, sample_normal(samples, len(joint.statistics.variances), seed), counts
+    )
     without = [_joint_left_out(gram, surface, index, kept) for index in range(len(gram))]
-    left = [projections(products, counts) for products, _ in without]
+    left = [project_left_out(products, counts) for products, _ in without]
     left_colour = [_followed(change, own) for change, (_, own) in zip(left, without, strict=True)]
     colour = appearance.colour_errors(stack, grams, texels)
     millimetres = partial(errors, _centred_gram(_moved(shape, alphas)))
     return Measures(
         name,
         np.cumsum(joint.explained),
-        colour_compactness(counts, _followed(reproductions(whole, counts), axes), colour),
+        colour_compactness(counts, _followed(reconstruct_subjects(whole, counts), axes), colour),
         generalisation(counts, left_colour, colour, "linear RGB"),
         specificity(counts, _followed(drawn, axes), colour, "linear RGB"),
         generalisation(counts, left, millimetres, "mm"),
@@ -94,8 +102,8 @@ def _joint_left_out(
     kept: int,
 ) -> tuple[LeftOut, Axes]:
     """Joint inner products without one subject, and the axes of the others' appearance model."""
-    appearance, surface = left_out(gram, index), left_out(shape_gram, index)
-    axes = principal_axes(appearance.gram, kept)
+    appearance, surface = leave_out(gram, index), leave_out(shape_gram, index)
+    axes = compute_axes(appearance.gram, kept)
     cross = surface.cross + _followed(appearance.cross, axes)
     return LeftOut(surface.gram + _truncated(axes), cross), axes
 
@@ -122,7 +130,7 @@ def _centred_gram(
 def _moved(
     shape: ShapeModel, alphas: Float[np.ndarray, "subjects modes"]
 ) -> Float[np.ndarray, "subjects modes"]:
-    """alpha in coordinates whose distance is the RMS displacement of a vertex in mm."""
+    """Alpha in coordinates whose distance is the RMS displacement of a vertex in mm."""
     basis = shape.basis[: alphas.shape[1]].reshape(alphas.shape[1], -1)
     lengths, directions = np.linalg.eigh(basis @ basis.T)
     scales = np.sqrt(np.maximum(lengths, 0) / len(shape.mean)) * shape.millimetres

@@ -7,18 +7,18 @@ import numpy as np
 from jaxtyping import Bool, Float, Float32
 from torch import Tensor
 
+from skinnet.appearance._feature_blocks import FeatureBlocks
+from skinnet.appearance._mixtures import Errors, errors
+from skinnet.appearance._model import AppearanceModel
 from skinnet.appearance.colour import SkinColour
-from skinnet.appearance.columns import Columns
-from skinnet.appearance.mixtures import Errors, errors
-from skinnet.appearance.model import AppearanceModel
+from skinnet.appearance.skin_texture import SkinTexture
 from skinnet.appearance.stack import SubjectStack
-from skinnet.appearance.subjects import SkinTexture
 
 
-class ColourColumns:
+class _ColourBlocks:
     """The linear RGB [subjects, 3, columns] of a stack's features."""
 
-    def __init__(self, features: Columns, colour: SkinColour):
+    def __init__(self, features: FeatureBlocks, colour: SkinColour):
         self.features, self.colour = features, colour
         self.shape = (features.shape[0], 3, features.shape[2])
 
@@ -35,8 +35,10 @@ class LinearModel(AppearanceModel):
     """
 
     @classmethod
-    def columns(cls, stack: SubjectStack, mask: Bool[np.ndarray, "rows columns"]) -> Columns:
-        return ColourColumns(stack.columns(mask), stack.colour)
+    def read_blocks(
+        cls, stack: SubjectStack, mask: Bool[np.ndarray, "rows columns"]
+    ) -> FeatureBlocks:
+        return _ColourBlocks(stack.read_blocks(mask), stack.colour)
 
     @classmethod
     def default_scales(

@@ -6,15 +6,15 @@ from typing import Any
 import numpy as np
 from jaxtyping import Float, Int
 
-from skinnet.appearance.mixtures import (
+from skinnet.appearance._mixtures import (
     Errors,
-    draws_as_weights,
-    left_out,
-    projections,
-    reproductions,
+    leave_out,
+    project_left_out,
+    reconstruct_subjects,
+    weigh_samples,
 )
-from skinnet.appearance.model import AppearanceModel
-from skinnet.appearance.principal import channel_grams, draws, scaled_gram
+from skinnet.appearance._model import AppearanceModel
+from skinnet.appearance._principal import combine_grams, compute_grams, sample_normal
 from skinnet.appearance.stack import SubjectStack
 from skinnet.errors import InputError
 
@@ -88,18 +88,18 @@ def measure(
     `default_counts`. A model whose features are not RGB is compared at `texels` of the mask (None:
     all). Raises `InputError` for fewer than three subjects or counts that cannot be had.
     """
-    grams = channel_grams(model.columns(stack, model.mask))
-    gram = scaled_gram(grams, model.statistics.scales)
+    grams = compute_grams(model.read_blocks(stack, model.mask))
+    gram = combine_grams(grams, model.statistics.scales)
     counts = check_counts(counts, len(model.statistics.variances), len(gram))
-    normal = draws(samples, len(model.statistics.variances), seed)
-    left = [projections(left_out(gram, index), counts) for index in range(len(gram))]
+    normal = sample_normal(samples, len(model.statistics.variances), seed)
+    left = [project_left_out(leave_out(gram, index), counts) for index in range(len(gram))]
     errors = model.colour_errors(stack, grams, texels)
     return Measures(
         name or type(model).__name__,
         np.cumsum(model.explained),
-        colour_compactness(counts, reproductions(gram, counts), errors),
+        colour_compactness(counts, reconstruct_subjects(gram, counts), errors),
         generalisation(counts, left, errors, "linear RGB"),
-        specificity(counts, draws_as_weights(gram, normal, counts), errors, "linear RGB"),
+        specificity(counts, weigh_samples(gram, normal, counts), errors, "linear RGB"),
     )
 
 

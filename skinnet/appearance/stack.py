@@ -11,9 +11,9 @@ import numpy as np
 from jaxtyping import Bool, Float32, Int
 from numpy.typing import NDArray
 
+from skinnet.appearance._feature_blocks import block_width
 from skinnet.appearance.colour import CHANNELS, SkinColour
-from skinnet.appearance.columns import block_width
-from skinnet.appearance.subjects import SkinTexture
+from skinnet.appearance.skin_texture import SkinTexture
 from skinnet.errors import InputError
 
 FEATURES, MASKS, STATE = "features.npy", "masks.npy", "stack.json"
@@ -82,9 +82,9 @@ class SubjectStack:
         left_out = int((drawn & (known > 0) & ~mask).sum())
         return Cover(mask, left_out, int((len(self.names) - known[mask]).sum()))
 
-    def columns(
+    def read_blocks(
         self, mask: Bool[np.ndarray, "rows columns"], width: int | None = None
-    ) -> "StackColumns":
+    ) -> "_StackBlocks":
         """The features of the texels in a mask, read about `width` texels at a time.
 
         Raises `InputError` for a mask of another size, or a texel in it that no subject has.
@@ -95,7 +95,7 @@ class SubjectStack:
                 f"{lost} texels of the mask are known in no subject of {self.folder}; "
                 "take the mask of its cover()."
             )
-        return StackColumns(self, mask, width)
+        return _StackBlocks(self, mask, width)
 
     def _check_size(self, mask: Bool[np.ndarray, "rows columns"]) -> None:
         if mask.shape != (self.size, self.size):
@@ -117,8 +117,8 @@ class SubjectStack:
         return np.asarray(np.load(self.folder / name, mmap_mode="r"))
 
 
-class StackColumns:
-    """`Columns` of a stack's features inside a mask; an unknown texel is the mean of the others."""
+class _StackBlocks:
+    """`FeatureBlocks` of a stack's features inside a mask; an unknown texel is the mean of the others."""
 
     def __init__(
         self, stack: SubjectStack, mask: Bool[np.ndarray, "size size"], width: int | None = None
@@ -133,10 +133,10 @@ class StackColumns:
             if (inside := self.inside[span]).any():
                 # Mapped anew for each block, so that what was read does not stay resident.
                 features = self.stack.array(FEATURES)[:, :, span][:, :, inside]
-                yield _filled(features, self.stack.array(MASKS)[:, span][:, inside])
+                yield _fill(features, self.stack.array(MASKS)[:, span][:, inside])
 
 
-def _filled(
+def _fill(
     features: Float32[np.ndarray, "subjects 5 columns"], masks: Bool[np.ndarray, "subjects columns"]
 ) -> Float32[np.ndarray, "subjects 5 columns"]:
     if masks.all():

@@ -11,16 +11,16 @@ import numpy as np
 from jaxtyping import Bool, Float
 from jsonargparse import ArgumentParser, Namespace
 
+from skinnet.appearance._scales import equal_effect
 from skinnet.appearance.hybrid import HybridModel
 from skinnet.appearance.joint import JointModel
 from skinnet.appearance.joint_measures import measure_joint
 from skinnet.appearance.linear import LinearModel
 from skinnet.appearance.maps_file import load_maps
 from skinnet.appearance.measures import Measures, measure
-from skinnet.appearance.scales import equal_effect
-from skinnet.appearance.spool import spool
+from skinnet.appearance.skin_texture import SkinTexture
 from skinnet.appearance.stack import SubjectStack
-from skinnet.appearance.subjects import SkinTexture
+from skinnet.appearance.stack_writer import write_stack
 from skinnet.errors import InputError
 from skinnet.files import write_text
 from skinnet.images.photograph import read_photo, write_png
@@ -29,7 +29,7 @@ from skinnet.mesh.mesh_file import read_mesh
 from skinnet.pipeline.command import add_output, output_folder
 from skinnet.pipeline.fit_file import load_fit
 from skinnet.pipeline.model_plots import Renderer, hybrid_sheet, linear_sheet, write_measures
-from skinnet.pipeline.progress import digest, say
+from skinnet.pipeline._progress import digest, log
 from skinnet.pipeline.relight import RelightSettings
 from skinnet.pipeline.scans import OUTPUT, ScanOptions
 
@@ -94,7 +94,7 @@ def run(config: Namespace) -> int:
     except InputError:
         shutil.rmtree(output / "stack")
         raise
-    say(f"{len(files)} subjects: {cover}.")
+    log(f"{len(files)} subjects: {cover}.")
     models = fitted_models(stack, cover.mask, config.model)
     measures = [measured(model, stack, config.model) for model in models]
     joint = None
@@ -144,13 +144,13 @@ def _edited(file: Path) -> bool:
     """Whether maps were made by edit-maps; an edited face is not another person."""
     edited = file.name.endswith(f"_edited{MAPS}")
     if edited:
-        say(f"{file} is an edited face and is left out.")
+        log(f"{file} is an edited face and is left out.")
     return edited
 
 
 def stacked(files: list[Path], folder: Path) -> SubjectStack:
     """The subjects on disk as one array; goes on where an interrupted run stopped."""
-    colours = {file: load_maps(file)[1].record() for file in files}
+    colours = {file: load_maps(file)[1].to_record() for file in files}
     first = colours[files[0]]
     for file, colour in colours.items():
         if colour != first:
@@ -159,11 +159,11 @@ def stacked(files: list[Path], folder: Path) -> SubjectStack:
                 "invert all together with one skinnet maps."
             )
     subjects = {str(file): partial(_texture, file) for file in files}
-    return spool(folder, subjects, load_maps(files[0])[1], digest(*files))
+    return write_stack(folder, subjects, load_maps(files[0])[1], digest(*files))
 
 
 def _texture(file: Path) -> SkinTexture:
-    say(f"{file} is read.")
+    log(f"{file} is read.")
     return load_maps(file)[0]
 
 
@@ -193,7 +193,7 @@ def measured(
     model: HybridModel | LinearModel, stack: SubjectStack, settings: ModelSettings
 ) -> Measures:
     """The measures of a model, announced, since they take a while."""
-    say(f"{type(model).__name__} is measured.")
+    log(f"{type(model).__name__} is measured.")
     return measure(model, stack, None, settings.samples, settings.seed)
 
 

@@ -20,7 +20,7 @@ from skinnet.physics.inversion import SkinInverse
 from skinnet.physics.optics import SkinOptics
 from skinnet.physics.reflectance import SkinReflectance
 from skinnet.physics.sources import spectrum_matrix
-from skinnet.pipeline.progress import say
+from skinnet.pipeline._progress import log
 
 WAYS = ("exposure", "common", "full", "none")
 NODES = (256, 256)
@@ -86,7 +86,7 @@ class ColourSettings:
         }
         way = ways.get(self.calibration, lambda: self._from_file(samples))
         found = way()
-        say(f"calibration ({self.calibration}): {found.told()}")
+        log(f"calibration ({self.calibration}): {found.told()}")
         colour = self._colour(matrix, found.transform)
         return Colours(self, colour, found)
 
@@ -116,18 +116,18 @@ class ColourSettings:
 
     def _full(self, matrix: Matrix, samples: Samples) -> "Calibrated":
         if len(samples) < FEW:
-            say(
+            log(
                 f"{len(samples)} scans hardly show all kinds of skin; the transform they give may "
                 "stretch one person over all of them."
             )
         found = calibrate(self._pooled(samples), self._model_colours(matrix), self.seed)
         if found.uncertainty > LOOSE:
-            say(
+            log(
                 f"these colours fix the transform to {found.uncertainty:.0%} only, however well "
                 "they fit it; take scans of more kinds of skin, or one exposure a scan "
                 "(--colour.calibration exposure)."
             )
-        say(
+        log(
             f"the transform is tied to {found.edges} stretches of the edge of the model's colours; "
             "if these skins end inside the range of --colour.f_mel and --colour.f_blood instead, "
             "it is wrong by as much."

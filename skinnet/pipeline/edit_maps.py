@@ -6,16 +6,16 @@ import numpy as np
 from jaxtyping import Float
 from jsonargparse import ArgumentParser, Namespace
 
-from skinnet.appearance.edit import PigmentEdit, edited
+from skinnet.appearance.edit import PigmentEdit, edit_texture
 from skinnet.appearance.maps_file import load_maps, save_maps
-from skinnet.appearance.subjects import SkinTexture
+from skinnet.appearance.skin_texture import SkinTexture
 from skinnet.images.photograph import read_photo, write_png
 from skinnet.inference.panel import picture, round_top, sheet
 from skinnet.mesh.mesh_file import read_mesh, write_mesh
 from skinnet.pipeline.build_model import MAPS
 from skinnet.pipeline.command import add_output, output_folder
 from skinnet.pipeline.maps_output import covered, pigment_tiles, shown, textured
-from skinnet.pipeline.progress import say
+from skinnet.pipeline._progress import log
 from skinnet.pipeline.relight import RelightSettings
 
 PIGMENTS = ("melanin", "hemoglobin")
@@ -52,7 +52,7 @@ def run(config: Namespace) -> int:
         PigmentEdit(config[name], config[f"{name}_add"], config[f"{name}_paint"])
         for name in PIGMENTS
     )
-    after = edited(before, melanin, hemoglobin, _mask(config.mask))
+    after = edit_texture(before, melanin, hemoglobin, _mask(config.mask))
     name = config.maps.name.removesuffix(MAPS).removesuffix(".npz")
     output = output_folder(config.output or config.maps.parent)
     stem = output / f"{name}_edited"
@@ -74,7 +74,7 @@ def run(config: Namespace) -> int:
         for row, rendered in zip(rows, pictures, strict=True):
             row.append(picture("relit", rendered))
     else:
-        say(f"There is no {mesh} to render on; the albedo alone is written.")
+        log(f"There is no {mesh} to render on; the albedo alone is written.")
     panel = sheet([tile for row in rows for tile in row], len(rows[0]))
     write_png(stem.with_name(f"{stem.name}_panel.png"), panel)
     print(f"{config.maps}: {stem}_maps.npz, _albedo.png, _panel.png", flush=True)

@@ -14,7 +14,7 @@ from skinnet.mesh.mesh_file import write_mesh
 from skinnet.pipeline.fit_file import load_fit, save_fit
 from skinnet.pipeline.initial_pose import find_initial_pose
 from skinnet.pipeline.preview import fit_sheet
-from skinnet.pipeline.progress import digest, finished, say, write_record
+from skinnet.pipeline._progress import digest, finished, log, write_record
 from skinnet.pipeline.scans import (
     Scan,
     ScanOptions,
@@ -83,15 +83,15 @@ def fitted(
     fingerprint = digest(path, options.model or "default", points, fit)
     files = [stem.with_name(f"{stem.name}_shape.{end}") for end in ("npz", "obj", "png", "json")]
     if finished(files[-1], fingerprint, files[:-1]) is not None:
-        say(f"{files[0]} is there already and is kept.")
+        log(f"{files[0]} is there already and is kept.")
         return Fitted(scan, load_fit(files[0]), stem, fingerprint)
     start = find_initial_pose(model, scan.mesh) if scan.landmarks is None else None
-    found = register(model, scan.mesh, scan.landmarks, fit, say, start)
+    found = register(model, scan.mesh, scan.landmarks, fit, log, start)
     _check(found, scan, model)
     save_fit(files[0], found)
     result = Fitted(scan, found, stem, fingerprint)
     if summary(result, model)["rms_deviations"] > UNLIKELY:
-        say(
+        log(
             f"{scan.path}: the fitted shape is an unlikely one for {model.name}; look at "
             f"{files[2]}, and give a model of real faces with --model."
         )

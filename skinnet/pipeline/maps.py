@@ -10,13 +10,13 @@ import torch
 from jaxtyping import Float
 from jsonargparse import ArgumentParser, Namespace
 
-from skinnet.appearance.subjects import SkinTexture
+from skinnet.appearance.skin_texture import SkinTexture
 from skinnet.errors import InputError
 from skinnet.files import atomic
 from skinnet.pipeline.calibrate import Colours, ColourSettings
 from skinnet.pipeline.fit_shape import Fitted, fitted
 from skinnet.pipeline.maps_output import ENDS, write_maps
-from skinnet.pipeline.progress import digest, finished, say, write_record
+from skinnet.pipeline._progress import digest, finished, log, write_record
 from skinnet.pipeline.scans import add_scan_arguments, each_scan, scan_options
 from skinnet.shape._icp import FitSettings
 from skinnet.shape.model import ShapeModel
@@ -127,7 +127,7 @@ def warped(fit: Fitted, model: ShapeModel, space: TextureSpace, settings: WarpSe
     with atomic(file) as part:
         np.savez(part, image=made.image, mask=made.mask)
     write_record(record, fingerprint, {"covered": float(covered)})
-    say(f"{fit.scan.path}: {covered:.0%} of the model's texels are covered by the scan.")
+    log(f"{fit.scan.path}: {covered:.0%} of the model's texels are covered by the scan.")
     return made
 
 
@@ -140,18 +140,18 @@ def inverted(skin: Skin, factor: float, model: ShapeModel, colours: Colours) -> 
         skin.warped.image.tobytes().hex(),
         factor,
         colours.settings,
-        colours.colour.record(),
+        colours.colour.to_record(),
     )
     files = [stem.with_name(stem.name + end) for end in ENDS]
     if finished(record, fingerprint, files) is not None:
-        say(f"{files[0]} is there already and is kept.")
+        log(f"{files[0]} is there already and is kept.")
         return
     texture, off = invert(skin.warped, factor, colours, str(skin.fitted.scan.path))
     face = skin.fitted.mesh(model)
     write_maps(stem, texture, colours.colour, face)
     found = write_record(record, fingerprint, summary(skin, texture, off, factor, colours))
     if off > DOUBTFUL:
-        say(
+        log(
             f"{skin.fitted.scan.path}: {off:.0%} of the texels lie off the colours of skin, and "
             "their pigments mean little; name the light and camera (--colour.light, .camera) or "
             "something white in the texture (--colour.white)."

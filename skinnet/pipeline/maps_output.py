@@ -7,9 +7,9 @@ from jaxtyping import Float32, UInt8
 from PIL import Image
 
 from skinnet.appearance.colour import SkinColour
-from skinnet.appearance.edit import PigmentEdit, edited
+from skinnet.appearance.edit import PigmentEdit, edit_texture
 from skinnet.appearance.maps_file import save_maps
-from skinnet.appearance.subjects import SkinTexture
+from skinnet.appearance.skin_texture import SkinTexture
 from skinnet.images.photograph import linear_to_srgb, to_uint8, write_png
 from skinnet.inference.panel import BLANK, TILE, picture, pigment_map, sheet
 from skinnet.mesh.mesh import Mesh
@@ -73,8 +73,8 @@ def covered(
 def maps_panel(texture: SkinTexture, colour: SkinColour, face: Mesh) -> UInt8[np.ndarray, "h w 3"]:
     """Texture and maps above; the face relit, flushed and tanned below (Figures 4 and 6)."""
     relight = RelightSettings(size=TILE)
-    flushed = edited(texture, PigmentEdit(), PigmentEdit(FLUSH))
-    tanned = edited(texture, PigmentEdit(TAN), PigmentEdit())
+    flushed = edit_texture(texture, PigmentEdit(), PigmentEdit(FLUSH))
+    tanned = edit_texture(texture, PigmentEdit(TAN), PigmentEdit())
     faces = {
         "relit": texture,
         f"hemoglobin x {FLUSH:g}": flushed,

@@ -13,7 +13,7 @@ from skinnet.mesh.mesh import Mesh
 from skinnet.mesh.mesh_file import read_mesh
 from skinnet.mesh.repair import check_mesh
 from skinnet.pipeline.command import add_output, output_folder
-from skinnet.pipeline.progress import say
+from skinnet.pipeline._progress import log
 from skinnet.shape.landmarks import check_landmarks, read_landmarks
 from skinnet.shape.model import ShapeModel
 from skinnet.shape.model_formats import load_shape_model
@@ -73,7 +73,7 @@ def load_scan(path: Path, model: ShapeModel, options: ScanOptions, textured: boo
     else:
         check_landmarks(points, model, checked.mesh, str(marks))
     for note in notes:
-        say(note)
+        log(note)
     return Scan(path, checked.mesh, points, tuple(notes))
 
 
@@ -102,7 +102,7 @@ def each_scan(
         try:
             action(path)
         except InputError as error:
-            say(f"skinnet: {error}")
+            log(f"skinnet: {error}")
             code = 2
     return code
 

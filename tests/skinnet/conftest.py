@@ -14,9 +14,9 @@ from skimage import data
 
 from benchmarks.appearance import person
 from skinnet.appearance.colour import SkinColour
-from skinnet.appearance.spool import spool
+from skinnet.appearance.skin_texture import SkinTexture
 from skinnet.appearance.stack import SubjectStack
-from skinnet.appearance.subjects import SkinTexture
+from skinnet.appearance.stack_writer import write_stack
 
 LIGHTS = ("D", "A")
 MAPS = ("melanin", "hemoglobin", "shading", "specular", "mask")
@@ -187,4 +187,4 @@ def stack(
     colour: SkinColour,
 ) -> SubjectStack:
     folder: Path = tmp_path_factory.mktemp("stack")
-    return spool(folder, persons, colour, "people")
+    return write_stack(folder, persons, colour, "people")

@@ -10,7 +10,7 @@ from torch.utils.data import default_collate
 
 from skinnet.appearance.colour import SkinColour
 from skinnet.appearance.maps_file import save_maps
-from skinnet.appearance.subjects import SkinTexture
+from skinnet.appearance.skin_texture import SkinTexture
 from skinnet.mesh.mesh_file import write_mesh
 from skinnet.shape._default_model import default_model
 from train.batch import Batch

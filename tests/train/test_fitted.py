@@ -10,8 +10,8 @@ from torch.utils.data import default_collate
 
 from skinnet.appearance.hybrid import HybridModel
 from skinnet.appearance.maps_file import load_maps
-from skinnet.appearance.spool import spool
-from skinnet.appearance.subjects import SkinTexture
+from skinnet.appearance.skin_texture import SkinTexture
+from skinnet.appearance.stack_writer import write_stack
 from skinnet.errors import InputError
 from skinnet.physics.decoder import srgb
 from train.fitted import FittedFaces, FittedLots, shrunk
@@ -83,7 +83,7 @@ def test_half_of_the_faces_wear_a_drawn_skin(faces: Path, tmp_path: Path) -> Non
         str(k): lambda k=k: SkinTexture(texture.f_mel * k, texture.f_blood, zero, texture.mask)
         for k in (1, 2, 4)
     }
-    stack = spool(tmp_path / "stack", people, colour, "test")
+    stack = write_stack(tmp_path / "stack", people, colour, "test")
     HybridModel.fit(stack).save(tmp_path / "hybrid.npz")
     data = FittedFaces(str(faces), str(tmp_path / "hybrid.npz"), size=16, texels=8, shots=1)
     data.setup("fit")

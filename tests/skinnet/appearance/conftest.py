@@ -6,9 +6,9 @@ from pathlib import Path
 import pytest
 
 from skinnet.appearance.colour import SkinColour
-from skinnet.appearance.spool import spool
+from skinnet.appearance.skin_texture import SkinTexture
 from skinnet.appearance.stack import SubjectStack
-from skinnet.appearance.subjects import SkinTexture
+from skinnet.appearance.stack_writer import write_stack
 
 
 @pytest.fixture
@@ -19,6 +19,6 @@ def without(
 
     def spooled(index: int) -> SubjectStack:
         others = {name: make for i, (name, make) in enumerate(persons.items()) if i != index}
-        return spool(tmp_path / str(index), others, colour, "people")
+        return write_stack(tmp_path / str(index), others, colour, "people")
 
     return spooled

@@ -49,8 +49,8 @@ def test_gradients_are_right(colour: SkinColour) -> None:
 
 
 def test_a_record_restores_it_exactly(colour: SkinColour) -> None:
-    restored = SkinColour.from_record(json.loads(json.dumps(colour.record())))
-    assert restored.record() == colour.record()
+    restored = SkinColour.from_record(json.loads(json.dumps(colour.to_record())))
+    assert restored.to_record() == colour.to_record()
     assert (restored.light, restored.camera, restored.optics) == ("LED-B3", "D200", "calibrated")
     assert torch.equal(restored(features(3)), colour(features(3)))
 
@@ -58,4 +58,4 @@ def test_a_record_restores_it_exactly(colour: SkinColour) -> None:
 def test_records_of_other_things_are_refused(colour: SkinColour) -> None:
     for change in ({"matrix": [[1.0]]}, {"nodes": [3]}, {"optics": "none"}):
         with pytest.raises(ValueError):
-            SkinColour.from_record(colour.record() | change)
+            SkinColour.from_record(colour.to_record() | change)

@@ -7,17 +7,17 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from skinnet.appearance import columns
+from skinnet.appearance import _feature_blocks
+from skinnet.appearance._model import AppearanceModel
 from skinnet.appearance.colour import SkinColour
 from skinnet.appearance.hybrid import HybridModel
 from skinnet.appearance.joint import JointModel
 from skinnet.appearance.joint_measures import measure_joint
 from skinnet.appearance.linear import LinearModel
 from skinnet.appearance.measures import default_counts, measure
-from skinnet.appearance.model import AppearanceModel
-from skinnet.appearance.spool import spool
+from skinnet.appearance.skin_texture import SkinTexture
 from skinnet.appearance.stack import SubjectStack
-from skinnet.appearance.subjects import SkinTexture
+from skinnet.appearance.stack_writer import write_stack
 from skinnet.errors import InputError
 from skinnet.shape.model import ShapeModel
 
@@ -125,8 +125,8 @@ def test_blocks_of_any_size_give_the_same(
 ) -> None:
     model = HybridModel.fit(stack)
     whole = measure(model, stack, samples=4).summary()
-    monkeypatch.setattr(columns, "BLOCK_BYTES", 3000)
-    assert stack.columns(model.mask).width == 21
+    monkeypatch.setattr(_feature_blocks, "BLOCK_BYTES", 3000)
+    assert stack.read_blocks(model.mask).width == 21
     small = measure(HybridModel.fit(stack), stack, samples=4).summary()
     for name in ("compactness", "generalisation", "specificity", "colour_compactness"):
         assert list(small[name].values()) == pytest.approx(list(whole[name].values()), rel=1e-4)
@@ -210,7 +210,7 @@ def test_counts_that_a_smaller_set_cannot_have_are_refused(
 def test_two_subjects_are_too_few(
     tmp_path: Path, persons: dict[str, Callable[[], SkinTexture]], colour: SkinColour
 ) -> None:
-    pair = spool(tmp_path, dict(list(persons.items())[:2]), colour, "pair")
+    pair = write_stack(tmp_path, dict(list(persons.items())[:2]), colour, "pair")
     with pytest.raises(InputError, match="needs three or more; the stack has 2"):
         measure(LinearModel.fit(pair), pair)
 

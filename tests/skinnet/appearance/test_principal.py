@@ -5,13 +5,13 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from skinnet.appearance import columns
-from skinnet.appearance.columns import ArrayColumns, block_width
-from skinnet.appearance.principal import (
+from skinnet.appearance import _feature_blocks
+from skinnet.appearance._feature_blocks import ArrayBlocks, block_width
+from skinnet.appearance._principal import (
     PrincipalComponents,
-    channel_grams,
-    principal_components,
-    scaled_gram,
+    combine_grams,
+    compute_components,
+    compute_grams,
 )
 from skinnet.errors import InputError
 
@@ -27,8 +27,8 @@ def rows(subjects: int = 6, texels: int = 40, seed: int = 0) -> np.ndarray:
 def fit(
     values: np.ndarray, components: int | None = None, width: int | None = None
 ) -> PrincipalComponents:
-    blocks = ArrayColumns(values, 2, width)
-    return principal_components(blocks, channel_grams(blocks), SCALES, components)
+    blocks = ArrayBlocks(values, 2, width)
+    return compute_components(blocks, compute_grams(blocks), SCALES, components)
 
 
 def test_they_are_those_of_a_singular_value_decomposition() -> None:
@@ -51,8 +51,8 @@ def test_blocks_of_any_width_give_the_same(width: int) -> None:
 def test_a_memmap_is_read_block_by_block(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     np.save(tmp_path / "rows.npy", rows())
     mapped = np.load(tmp_path / "rows.npy", mmap_mode="r")
-    monkeypatch.setattr(columns, "BLOCK_BYTES", 4 * 6 * 2 * 5)
-    blocks = ArrayColumns(mapped, 2)
+    monkeypatch.setattr(_feature_blocks, "BLOCK_BYTES", 4 * 6 * 2 * 5)
+    blocks = ArrayBlocks(mapped, 2)
     assert [block.shape for block in blocks] == [(6, 2, 5)] * 8
     assert np.array_equal(fit(mapped).basis, fit(rows(), width=5).basis)
 
@@ -63,11 +63,11 @@ def test_a_thousand_subjects_take_blocks_of_bounded_size() -> None:
 
 
 def test_inner_products_are_gathered_channel_by_channel() -> None:
-    grams = channel_grams(ArrayColumns(rows(), 2, 7))
+    grams = compute_grams(ArrayBlocks(rows(), 2, 7))
     centred = rows().astype(np.float64) - rows().mean(0, dtype=np.float64)
     halves = np.split(centred, 2, axis=1)
     assert np.allclose(grams, [half @ half.T for half in halves])
-    assert np.allclose(scaled_gram(grams, SCALES), grams[0] / 0.25 + grams[1] / 4)
+    assert np.allclose(combine_grams(grams, SCALES), grams[0] / 0.25 + grams[1] / 4)
 
 
 def test_projection_undoes_reconstruction() -> None:
@@ -116,4 +116,4 @@ def test_subjects_that_do_not_differ_are_refused(count: int) -> None:
 
 def test_features_are_split_into_equal_blocks() -> None:
     with pytest.raises(InputError, match="80 features cannot be split into 3"):
-        ArrayColumns(rows(), 3)
+        ArrayBlocks(rows(), 3)

@@ -12,11 +12,11 @@ import pytest
 import torch
 
 from benchmarks.appearance import person
-from skinnet.appearance import spool as spooling
+from skinnet.appearance import stack_writer
 from skinnet.appearance.colour import SkinColour
-from skinnet.appearance.spool import spool
+from skinnet.appearance.skin_texture import SkinTexture
 from skinnet.appearance.stack import SubjectStack, open_stack
-from skinnet.appearance.subjects import SkinTexture
+from skinnet.appearance.stack_writer import write_stack
 from skinnet.errors import InputError
 
 Persons = dict[str, Callable[[], SkinTexture]]
@@ -37,7 +37,7 @@ def patchy(tmp_path: Path, persons: Persons, colour: SkinColour) -> SubjectStack
         name: partial(without_texels, make(), cut.get(name, slice(0, 0)))
         for name, make in persons.items()
     }
-    return spool(tmp_path / "patchy", subjects, colour, "patchy")
+    return write_stack(tmp_path / "patchy", subjects, colour, "patchy")
 
 
 def test_a_subject_comes_back_as_it_was(stack: SubjectStack, persons: Persons) -> None:
@@ -70,16 +70,16 @@ def test_interrupted_work_goes_on_where_it_was(
 
     failing = {name: partial(noted, name, name == "person 4") for name in persons}
     with pytest.raises(InputError, match="person 4 has no skin"):
-        spool(tmp_path, failing, colour, "people")
+        write_stack(tmp_path, failing, colour, "people")
     with pytest.raises(InputError, match="holds 4 of 7 subjects; run the command"):
         open_stack(tmp_path)
-    resumed = spool(
+    resumed = write_stack(
         tmp_path, {name: partial(noted, name, False) for name in persons}, colour, "people"
     )
     assert made == list(persons)
     for name in ("features.npy", "masks.npy"):
         assert (tmp_path / name).read_bytes() == (stack.folder / name).read_bytes()
-    spool(tmp_path, failing, colour, "people")
+    write_stack(tmp_path, failing, colour, "people")
     assert made == list(persons) and resumed.names == tuple(persons)
 
 
@@ -95,7 +95,7 @@ def test_another_stack_is_not_written_over(
         (persons, others, "people"),
     ):
         with pytest.raises(InputError, match="choose another folder or delete it"):
-            spool(stack.folder, subjects, seen, inputs)
+            write_stack(stack.folder, subjects, seen, inputs)
     assert (stack.folder / "features.npy").read_bytes() == before
 
 
@@ -106,19 +106,19 @@ def test_lost_arrays_are_made_again(
     (tmp_path / "copy" / "masks.npy").write_bytes(b"\x93NUMPY")
     with pytest.raises(InputError, match="are damaged; delete the folder, make it again"):
         open_stack(tmp_path / "copy")
-    found = spool(tmp_path / "copy", persons, colour, "people")
+    found = write_stack(tmp_path / "copy", persons, colour, "people")
     assert np.array_equal(found.texture(6).f_mel, stack.texture(6).f_mel)
 
 
 def test_resolutions_must_agree(tmp_path: Path, persons: Persons, colour: SkinColour) -> None:
     mixed = dict(persons) | {"big": partial(person, 32, 9)}
     with pytest.raises(InputError, match="big has 32 texels a side and the subjects before it 20"):
-        spool(tmp_path, mixed, colour, "mixed")
+        write_stack(tmp_path, mixed, colour, "mixed")
 
 
 def test_one_subject_is_no_sample(tmp_path: Path, persons: Persons, colour: SkinColour) -> None:
     with pytest.raises(InputError, match="at least two subjects; got 1"):
-        spool(tmp_path / "x", {"person 0": persons["person 0"]}, colour, "")
+        write_stack(tmp_path / "x", {"person 0": persons["person 0"]}, colour, "")
     assert not (tmp_path / "x").exists()
 
 
@@ -126,9 +126,9 @@ def test_a_full_disk_is_noticed_before(
     tmp_path: Path, persons: Persons, colour: SkinColour, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     usage = shutil.disk_usage(tmp_path)._replace(free=1000)
-    monkeypatch.setattr(spooling.shutil, "disk_usage", lambda _: usage)
+    monkeypatch.setattr(stack_writer.shutil, "disk_usage", lambda _: usage)
     with pytest.raises(InputError, match=r"7 subjects of 20 x 20 texels take 0\.0 GB"):
-        spool(tmp_path, persons, colour, "")
+        write_stack(tmp_path, persons, colour, "")
 
 
 @pytest.mark.parametrize("text", [None, "", "[]", "{}", '{"names": 3}'])
@@ -160,7 +160,7 @@ def test_a_share_fills_with_the_mean_of_the_others(patchy: SubjectStack) -> None
     face = patchy.texture(6).mask
     assert cover.mask[5].any() and not cover.mask[6].any()
     assert cover.filled == 2 * face[5].sum() and cover.left_out == face[6].sum()
-    (block,) = patchy.columns(cover.mask)
+    (block,) = patchy.read_blocks(cover.mask)
     row = np.flatnonzero(cover.mask) // 20 == 5
     assert np.isfinite(block).all()
     assert np.allclose(block[0][:, row], block[2:][:, :, row].mean(0), atol=1e-7)
@@ -169,12 +169,12 @@ def test_a_share_fills_with_the_mean_of_the_others(patchy: SubjectStack) -> None
 
 def test_columns_come_in_blocks_of_the_texels_inside(patchy: SubjectStack) -> None:
     mask = patchy.cover(share=5 / 7).mask
-    (whole,) = patchy.columns(mask)
+    (whole,) = patchy.read_blocks(mask)
     for width in (1, 13, 400):
-        blocks = list(patchy.columns(mask, width))
+        blocks = list(patchy.read_blocks(mask, width))
         assert max(block.shape[2] for block in blocks) <= width
         assert np.array_equal(np.concatenate(blocks, 2), whole)
-    assert patchy.columns(mask).shape == whole.shape
+    assert patchy.read_blocks(mask).shape == whole.shape
 
 
 def test_a_drawn_mask_narrows_the_cover(stack: SubjectStack) -> None:
@@ -192,7 +192,7 @@ def test_a_drawn_mask_narrows_the_cover(stack: SubjectStack) -> None:
 
 def test_a_mask_where_nobody_has_skin_is_refused(stack: SubjectStack) -> None:
     with pytest.raises(InputError, match="texels of the mask are known in no subject"):
-        stack.columns(np.ones((20, 20), bool))
+        stack.read_blocks(np.ones((20, 20), bool))
 
 
 @pytest.mark.parametrize("name, value, sentence", [

@@ -10,8 +10,8 @@ from torch.utils.data import default_collate
 from examples import london
 from skinnet.appearance.colour import SkinColour
 from skinnet.appearance.hybrid import HybridModel
-from skinnet.appearance.spool import spool
-from skinnet.appearance.subjects import SkinTexture
+from skinnet.appearance.skin_texture import SkinTexture
+from skinnet.appearance.stack_writer import write_stack
 from skinnet.errors import InputError
 from skinnet.physics.sources import spectrum_matrix
 from skinnet.shape.procedural_head import chart
@@ -44,7 +44,7 @@ def model(tmp_path_factory: pytest.TempPathFactory) -> HybridModel:
     folder = tmp_path_factory.mktemp("people")
     people = {str(i): lambda i=i: person(i) for i in range(5)}
     colour = SkinColour(spectrum_matrix("D65", "mean").numpy())
-    return HybridModel.fit(spool(folder, people, colour, "people"))
+    return HybridModel.fit(write_stack(folder, people, colour, "people"))
 
 
 @pytest.fixture(scope="module")

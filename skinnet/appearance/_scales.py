@@ -29,7 +29,7 @@ def equal_effect(
 
     Components are then ordered by what is seen of them, to first order.
     """
-    columns = stack.columns(stack.cover().mask if mask is None else mask)
+    columns = stack.read_blocks(stack.cover().mask if mask is None else mask)
     total = sum(block.sum((0, 2), dtype=np.float64) for block in columns)
     mean = torch.from_numpy(total / (columns.shape[0] * columns.shape[2]))[:, None]
     slopes = torch.autograd.functional.jacobian(stack.colour, mean)

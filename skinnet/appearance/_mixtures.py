@@ -11,7 +11,7 @@ from typing import NamedTuple
 import numpy as np
 from jaxtyping import Float, Int
 
-from skinnet.appearance.principal import principal_axes
+from skinnet.appearance._principal import compute_axes
 
 Errors = Callable[[Float[np.ndarray, "mixtures subjects"]], Float[np.ndarray, "mixtures subjects"]]
 """RMS differences between mixtures, of the weights given, and each of the subjects."""
@@ -27,7 +27,7 @@ class LeftOut(NamedTuple):
     cross: Float[np.ndarray, "others"]
 
 
-def left_out(gram: Float[np.ndarray, "subjects subjects"], index: int) -> LeftOut:
+def leave_out(gram: Float[np.ndarray, "subjects subjects"], index: int) -> LeftOut:
     """The inner products of a set without one of its subjects; `gram` may have any centre."""
     others = np.delete(np.arange(len(gram)), index)
     between, cross = gram[np.ix_(others, others)], gram[others, index]
@@ -37,19 +37,19 @@ def left_out(gram: Float[np.ndarray, "subjects subjects"], index: int) -> LeftOu
     )
 
 
-def projections(
+def project_left_out(
     products: LeftOut, counts: Int[np.ndarray, "counts"]
 ) -> Float[np.ndarray, "counts others"]:
     """Changes of the weights, from those of the mean, that reconstruct the one left out.
 
     One row for each number of components of the others; sum_k u_k (u_k . cross) / length_k.
     """
-    vectors, lengths = principal_axes(products.gram, int(counts.max()))
+    vectors, lengths = compute_axes(products.gram, int(counts.max()))
     steps = vectors * (vectors.T @ products.cross / lengths)
     return _cumulative(steps.T, counts)
 
 
-def draws_as_weights(
+def weigh_samples(
     gram: Float[np.ndarray, "subjects subjects"],
     normal: Float[np.ndarray, "samples components"],
     counts: Int[np.ndarray, "counts"],
@@ -59,16 +59,16 @@ def draws_as_weights(
     One row for each number of components: beta_k = z_k deviation_k is a mixture with
     z_k u_k / sqrt(n - 1).
     """
-    vectors, _ = principal_axes(gram, int(counts.max()))
+    vectors, _ = compute_axes(gram, int(counts.max()))
     steps = normal[:, : vectors.shape[1], None] * vectors.T / np.sqrt(len(gram) - 1)
     return np.stack([_cumulative(step, counts) for step in steps])
 
 
-def reproductions(
+def reconstruct_subjects(
     gram: Float[np.ndarray, "subjects subjects"], counts: Int[np.ndarray, "counts"]
 ) -> Float[np.ndarray, "subjects counts subjects"]:
     """Changes of the weights, from those of the mean, that reconstruct each subject of the set."""
-    vectors, _ = principal_axes(gram, int(counts.max()))
+    vectors, _ = compute_axes(gram, int(counts.max()))
     return np.stack([_cumulative((vectors * own).T, counts) for own in vectors])
 
 

@@ -13,7 +13,7 @@ BLOCK_BYTES = 2**27
 
 
 @runtime_checkable
-class Columns(Protocol):
+class FeatureBlocks(Protocol):
     """Features of all subjects that are read a block of texels at a time, as often as needed.
 
     `shape` is subjects, channels (one for each kind of feature), texels.
@@ -24,7 +24,7 @@ class Columns(Protocol):
     def __iter__(self) -> Iterator[Float32[np.ndarray, "subjects channels columns"]]: ...
 
 
-class ArrayColumns:
+class ArrayBlocks:
     """A matrix [subjects, features], which may be a memmap, read `width` texels at a time.
 
     `features` is `channels` runs of as many texels each.

@@ -5,15 +5,15 @@ from collections.abc import Callable
 import numpy as np
 from jaxtyping import Bool, Float, Float32
 
-from skinnet.appearance.columns import Columns, block_width
+from skinnet.appearance._feature_blocks import FeatureBlocks, block_width
 
 Decode = Callable[
     [Float32[np.ndarray, "faces channels columns"]], Float32[np.ndarray, "faces 3 columns"]
 ]
 
 
-def decoded_errors(
-    columns: Columns, decode: Decode, weights: Float[np.ndarray, "mixtures subjects"]
+def compute_decoded_errors(
+    columns: FeatureBlocks, decode: Decode, weights: Float[np.ndarray, "mixtures subjects"]
 ) -> Float[np.ndarray, "mixtures subjects"]:
     """RMS difference in RGB between each decoded mixture of features and each subject."""
     subjects, channels, texels = columns.shape
@@ -22,24 +22,24 @@ def decoded_errors(
     for block in columns:
         colours = decode(block)
         mean = colours.mean(0)
-        truth = _centred(colours, mean)
+        truth = _center(colours, mean)
         squares += (truth**2).sum(1)
         step = block_width(block.shape[2], channels)
         for start in range(0, len(weights), step):
             part = slice(start, start + step)
-            mixed = _centred(decode(np.tensordot(single[part], block, 1)), mean)
+            mixed = _center(decode(np.tensordot(single[part], block, 1)), mean)
             squares[part] += (mixed**2).sum(1)[:, None] - 2 * mixed @ truth.T
     return np.asarray(np.sqrt(np.maximum(squares, 0) / (3 * texels)))
 
 
-def _centred(
+def _center(
     colours: Float32[np.ndarray, "faces 3 columns"], mean: Float32[np.ndarray, "3 columns"]
 ) -> Float[np.ndarray, "faces values"]:
     # Small distances are differences of large squares: less is lost about the mean, in float64.
     return np.asarray((colours - mean).reshape(len(colours), -1), np.float64)
 
 
-def thinned(
+def subsample(
     mask: Bool[np.ndarray, "size size"], texels: int | None
 ) -> Bool[np.ndarray, "size size"]:
     """That many texels of a mask, always the same random ones; None or too many: all of them."""

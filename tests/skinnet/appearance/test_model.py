@@ -13,14 +13,14 @@ import pytest
 import torch
 
 from benchmarks.appearance import person
+from skinnet.appearance._model import AppearanceModel
+from skinnet.appearance._scales import equal_effect, equal_variance
 from skinnet.appearance.colour import SkinColour
 from skinnet.appearance.hybrid import HybridModel
 from skinnet.appearance.linear import LinearModel
-from skinnet.appearance.model import AppearanceModel
-from skinnet.appearance.scales import equal_effect, equal_variance
-from skinnet.appearance.spool import spool
+from skinnet.appearance.skin_texture import SkinTexture
 from skinnet.appearance.stack import SubjectStack
-from skinnet.appearance.subjects import SkinTexture
+from skinnet.appearance.stack_writer import write_stack
 from skinnet.errors import InputError
 
 KINDS: list[type[AppearanceModel]] = [HybridModel, LinearModel]
@@ -110,7 +110,7 @@ def test_samples_without_offset_lie_on_the_manifold_of_skin(
         return replace(face, offset=np.zeros_like(face.offset))
 
     makers = {str(seed): partial(bare, seed) for seed in range(5)}
-    model = HybridModel.fit(spool(tmp_path, makers, colour, "bare"))
+    model = HybridModel.fit(write_stack(tmp_path, makers, colour, "bare"))
     for beta in model.sample(5, seed=1):
         face = model.texture(beta)
         assert np.abs(face.offset).max() == 0
@@ -134,7 +134,7 @@ def test_fractions_that_leave_the_unit_interval_are_clamped_and_counted(
 
 def test_blocks_have_equal_variance_by_default(stack: SubjectStack) -> None:
     model = HybridModel.fit(stack)
-    (features,) = stack.columns(model.mask)
+    (features,) = stack.read_blocks(model.mask)
     blood, mel, *offset = (features / model.statistics.scales[:, None]).var(0, ddof=1).mean(-1)
     assert np.allclose([blood, mel, sum(offset)], 1, rtol=1e-4)
     assert len(set(model.statistics.scales[2:])) == 1
@@ -144,7 +144,7 @@ def test_blocks_have_equal_variance_by_default(stack: SubjectStack) -> None:
 def test_features_can_be_weighed_by_their_effect(stack: SubjectStack) -> None:
     scales = equal_effect(stack)
     assert np.allclose(scales[2:], 1)
-    (features,) = stack.columns(stack.cover().mask)
+    (features,) = stack.read_blocks(stack.cover().mask)
     mean = features.mean((0, 2))
     for channel in range(5):
         steps = mean + np.outer([-0.5, 0.5], np.eye(5)[channel]) * 1e-3 * scales[channel]
@@ -201,7 +201,7 @@ def test_files_hold_the_model_exactly(model: AppearanceModel, tmp_path: Path) ->
     for name in ("mean", "basis", "variances", "scales", "total", "subjects"):
         assert np.array_equal(getattr(found.statistics, name), getattr(model.statistics, name))
     assert np.array_equal(found.mask, model.mask)
-    assert found.colour.record() == model.colour.record()
+    assert found.colour.to_record() == model.colour.to_record()
     beta = model.sample(1, seed=0)[0]
     assert np.array_equal(found.reconstruct(beta), model.reconstruct(beta))
     assert found.statistics.basis.dtype == np.float32
@@ -281,7 +281,7 @@ def test_what_is_missing_in_some_is_filled(tmp_path: Path, colour: SkinColour) -
         face.mask[10] &= seed != 0
         return face
 
-    stack = spool(tmp_path, {str(s): partial(holed, s) for s in range(4)}, colour, "holed")
+    stack = write_stack(tmp_path, {str(s): partial(holed, s) for s in range(4)}, colour, "holed")
     mask = stack.cover(share=0.75).mask
     for kind in KINDS:
         model = kind.fit(stack, mask=mask)

@@ -12,15 +12,15 @@ from jaxtyping import Bool
 from numpy.typing import NDArray
 
 from skinnet._version import __version__
+from skinnet.appearance._principal import PrincipalComponents
 from skinnet.appearance.colour import SkinColour
-from skinnet.appearance.principal import PrincipalComponents
 from skinnet.errors import InputError
 from skinnet.files import atomic
 
 FORMAT = 1
 """Version of the files' contents."""
 
-BROKEN = (
+READ_ERRORS = (
     *(OSError, EOFError, KeyError, TypeError, ValueError, AttributeError),
     *(zipfile.BadZipFile, zlib.error, NotImplementedError, MemoryError),
 )
@@ -32,7 +32,7 @@ STATISTICS = ("mean", "basis", "variances", "scales")
 Array = NDArray[Any]
 
 
-def save(
+def save_model(
     path: Path,
     kind: str,
     statistics: PrincipalComponents,
@@ -44,49 +44,49 @@ def save(
     Raises `InputError` if the path does not end in .npz or cannot be written.
     """
     header = {
-        "colour": colour.record(),
+        "colour": colour.to_record(),
         "total": statistics.total,
         "subjects": statistics.subjects,
     }
     arrays = {name: getattr(statistics, name) for name in STATISTICS}
-    write(path, kind, header, arrays | {"mask": mask})
+    write_arrays(path, kind, header, arrays | {"mask": mask})
 
 
-def load(
+def load_model(
     path: Path, kind: str
 ) -> tuple[PrincipalComponents, Bool[np.ndarray, "size size"], SkinColour]:
     """Read a model of the given kind. Raises `InputError` for anything else."""
-    header, arrays = read(path, kind, (*STATISTICS, "mask"))
+    header, arrays = read_arrays(path, kind, (*STATISTICS, "mask"))
     mask = arrays.pop("mask")
     try:
         colour = SkinColour.from_record(header["colour"])
-    except BROKEN as error:
-        raise damaged(path) from error
-    statistics = as_statistics(path, header, arrays)
+    except READ_ERRORS as error:
+        raise make_damage_error(path) from error
+    statistics = build_statistics(path, header, arrays)
     if mask.dtype != bool or mask.shape != (len(mask),) * 2 or mask.sum() != len(statistics.mean.T):
-        raise damaged(path)
+        raise make_damage_error(path)
     return statistics, mask, colour
 
 
-def as_statistics(
+def build_statistics(
     path: Path, header: Mapping[str, Any], arrays: Mapping[str, Array]
 ) -> PrincipalComponents:
     """The components in a file. Raises `InputError` where its parts do not fit together."""
     mean, basis, variances, scales = (arrays[name] for name in STATISTICS)
     if basis.ndim != 3 or basis.shape != (*variances.shape, *scales.shape, basis.shape[2]):
-        raise damaged(path)
+        raise make_damage_error(path)
     if mean.shape != basis.shape[1:] or not mean.dtype == basis.dtype == np.float32:
-        raise damaged(path)
+        raise make_damage_error(path)
     try:
         if not all(np.isfinite(array).all() for array in (mean, variances, scales)):
-            raise damaged(path)
+            raise make_damage_error(path)
         total, subjects = float(header["total"]), int(header["subjects"])
         return PrincipalComponents(mean, basis, variances, scales, total, subjects)
-    except BROKEN as error:
-        raise damaged(path) from error
+    except READ_ERRORS as error:
+        raise make_damage_error(path) from error
 
 
-def write(path: Path, kind: str, header: dict[str, Any], arrays: dict[str, Any]) -> None:
+def write_arrays(path: Path, kind: str, header: dict[str, Any], arrays: dict[str, Any]) -> None:
     """Write arrays under a header that says what they are."""
     if path.suffix != ".npz":
         raise InputError(f"{path} does not end in .npz, as models' files do.")
@@ -98,7 +98,9 @@ def write(path: Path, kind: str, header: dict[str, Any], arrays: dict[str, Any])
         raise InputError(f"{path} cannot be written ({error.strerror}); check the path.") from error
 
 
-def read(path: Path, kind: str, names: tuple[str, ...]) -> tuple[dict[str, Any], dict[str, Array]]:
+def read_arrays(
+    path: Path, kind: str, names: tuple[str, ...]
+) -> tuple[dict[str, Any], dict[str, Array]]:
     """Header and arrays of a file of that kind; raises `InputError` for anything else."""
     if not path.is_file():
         raise InputError(f"There is no file {path}; check the path.")
@@ -110,11 +112,11 @@ def read(path: Path, kind: str, names: tuple[str, ...]) -> tuple[dict[str, Any],
             return header, {name: file[name] for name in names}
     except InputError:
         raise
-    except BROKEN as error:
-        raise damaged(path) from error
+    except READ_ERRORS as error:
+        raise make_damage_error(path) from error
 
 
-def damaged(path: Path) -> InputError:
+def make_damage_error(path: Path) -> InputError:
     """The sentence for a file that is not what it should be."""
     return InputError(
         f"{path} is not a whole model of skinnet's (damaged, cut short, or something else); make "

@@ -7,7 +7,7 @@ import numpy as np
 from jaxtyping import Bool, Float, Float32
 from scipy.linalg import eigh
 
-from skinnet.appearance.columns import ArrayColumns, Columns
+from skinnet.appearance._feature_blocks import ArrayBlocks, FeatureBlocks
 from skinnet.errors import InputError
 
 MAX_COMPONENTS = 100
@@ -44,7 +44,7 @@ class PrincipalComponents:
         Raises `InputError` if so few texels are covered that they do not determine beta.
         """
         known = np.where(covered, features, self.mean).astype(np.float32)
-        right = self.coefficients(ArrayColumns(known.reshape(1, -1), len(known)))[0]
+        right = self.project_blocks(ArrayBlocks(known.reshape(1, -1), len(known)))[0]
         if covered.all():
             return np.asarray(right)
         # P is orthonormal over all texels, so only those that are missing need a product.
@@ -59,8 +59,8 @@ class PrincipalComponents:
             )
         return np.asarray(np.linalg.solve(normal, right))
 
-    def coefficients(self, columns: Columns) -> Float[np.ndarray, "subjects components"]:
-        """beta of every row of features, which are those of the model's texels."""
+    def project_blocks(self, columns: FeatureBlocks) -> Float[np.ndarray, "subjects components"]:
+        """Beta of every row of features, which are those of the model's texels."""
         beta = np.zeros((columns.shape[0], len(self.basis)))
         start = 0
         for block in columns:
@@ -72,15 +72,17 @@ class PrincipalComponents:
 
     def sample(self, count: int, seed: int) -> Float[np.ndarray, "samples components"]:
         """Coefficients drawn from N(0, variances); the same seed draws the same."""
-        return np.asarray(draws(count, len(self.variances), seed) * np.sqrt(self.variances))
+        return np.asarray(sample_normal(count, len(self.variances), seed) * np.sqrt(self.variances))
 
 
-def draws(count: int, components: int, seed: int) -> Float[np.ndarray, "samples components"]:
+def sample_normal(
+    count: int, components: int, seed: int
+) -> Float[np.ndarray, "samples components"]:
     """Standard normal numbers; a row is the same however many rows follow."""
     return np.random.default_rng(seed).standard_normal((count, components))
 
 
-def channel_grams(columns: Columns) -> Float[np.ndarray, "channels subjects subjects"]:
+def compute_grams(columns: FeatureBlocks) -> Float[np.ndarray, "channels subjects subjects"]:
     """Inner products between centred subjects, of each channel by itself, in float64."""
     subjects, channels, _ = columns.shape
     grams = np.zeros((channels, subjects, subjects))
@@ -92,7 +94,7 @@ def channel_grams(columns: Columns) -> Float[np.ndarray, "channels subjects subj
     return grams
 
 
-def scaled_gram(
+def combine_grams(
     grams: Float[np.ndarray, "channels subjects subjects"], scales: Float[np.ndarray, "channels"]
 ) -> Float[np.ndarray, "subjects subjects"]:
     """Inner products of features divided by their channel's scale."""
@@ -110,7 +112,7 @@ class Axes(NamedTuple):
     lengths: Float[np.ndarray, "axes"]
 
 
-def principal_axes(gram: Float[np.ndarray, "subjects subjects"], most: int) -> Axes:
+def compute_axes(gram: Float[np.ndarray, "subjects subjects"], most: int) -> Axes:
     """The first axes of a centred Gram matrix, at most that many."""
     count = len(gram)
     first = min(max(count - most, 0), count - 1)
@@ -122,24 +124,24 @@ def principal_axes(gram: Float[np.ndarray, "subjects subjects"], most: int) -> A
     return Axes((vectors * signs)[:, kept], lengths[kept])
 
 
-def principal_components(
-    columns: Columns,
+def compute_components(
+    columns: FeatureBlocks,
     grams: Float[np.ndarray, "channels subjects subjects"],
     scales: Float[np.ndarray, "channels"],
     components: int | None = None,
 ) -> PrincipalComponents:
-    """The components of all subjects, from their `channel_grams`, in one more pass over them.
+    """The components of all subjects, from their `compute_grams`, in one more pass over them.
 
     Memory is that of the basis, 4 K C M bytes, and of a few blocks; the features' covariance is
     never made. None keeps all components up to `MAX_COMPONENTS`. Raises `InputError` for more
     components than the subjects span, and if the subjects do not differ.
     """
-    gram = scaled_gram(grams, scales)
+    gram = combine_grams(grams, scales)
     divisor = max(len(gram) - 1, 1)
     total = float(np.trace(gram)) / divisor
     if total < SAME**2 * columns.shape[1] * columns.shape[2]:
         raise InputError(f"A model needs subjects that differ; got {len(gram)} that do not.")
-    axes = principal_axes(gram, MAX_COMPONENTS if components is None else components)
+    axes = compute_axes(gram, MAX_COMPONENTS if components is None else components)
     if components is not None and not 1 <= components <= len(axes.lengths):
         raise InputError(_too_many(components, gram))
     mean, basis = _basis(columns, axes, scales)
@@ -147,7 +149,7 @@ def principal_components(
 
 
 def _too_many(asked: int, gram: Float[np.ndarray, "subjects subjects"]) -> str:
-    found = len(principal_axes(gram, len(gram)).lengths)
+    found = len(compute_axes(gram, len(gram)).lengths)
     return (
         f"{asked} components were asked for, and {len(gram)} subjects span {found}; ask for 1 to "
         f"{found}, or give more subjects."
@@ -155,7 +157,7 @@ def _too_many(asked: int, gram: Float[np.ndarray, "subjects subjects"]) -> str:
 
 
 def _basis(
-    columns: Columns, axes: Axes, scales: Float[np.ndarray, "channels"]
+    columns: FeatureBlocks, axes: Axes, scales: Float[np.ndarray, "channels"]
 ) -> tuple[
     Float32[np.ndarray, "channels texels"], Float32[np.ndarray, "components channels texels"]
 ]:

@@ -9,13 +9,13 @@ import torch
 from jaxtyping import Bool, Float, Float32
 from torch import Tensor, nn
 
-from skinnet.appearance import model_file
+from skinnet.appearance import _model_arrays
+from skinnet.appearance._feature_blocks import FeatureBlocks
+from skinnet.appearance._mixtures import Errors
+from skinnet.appearance._principal import PrincipalComponents, compute_components, compute_grams
 from skinnet.appearance.colour import SkinColour
-from skinnet.appearance.columns import Columns
-from skinnet.appearance.mixtures import Errors
-from skinnet.appearance.principal import PrincipalComponents, channel_grams, principal_components
+from skinnet.appearance.skin_texture import SkinTexture
 from skinnet.appearance.stack import SubjectStack
-from skinnet.appearance.subjects import SkinTexture
 from skinnet.errors import InputError
 
 Model = TypeVar("Model", bound="AppearanceModel")
@@ -72,19 +72,21 @@ class AppearanceModel(nn.Module, ABC):
         positive.
         """
         mask = stack.cover().mask if mask is None else mask
-        columns = cls.columns(stack, mask)
-        grams = channel_grams(columns)
+        columns = cls.read_blocks(stack, mask)
+        grams = compute_grams(columns)
         scales = cls.default_scales(grams, columns.shape[2]) if scales is None else scales
         if scales.shape != (columns.shape[1],) or not (np.isfinite(scales) & (scales > 0)).all():
             raise InputError(
                 f"scales are {columns.shape[1]} positive numbers, one a channel; got {scales}."
             )
-        statistics = principal_components(columns, grams, scales.astype(np.float64), components)
+        statistics = compute_components(columns, grams, scales.astype(np.float64), components)
         return cls(statistics, mask, stack.colour)
 
     @classmethod
     @abstractmethod
-    def columns(cls, stack: SubjectStack, mask: Bool[np.ndarray, "rows columns"]) -> Columns:
+    def read_blocks(
+        cls, stack: SubjectStack, mask: Bool[np.ndarray, "rows columns"]
+    ) -> FeatureBlocks:
         """The features of a stack that the model is made of, inside a mask."""
 
     @classmethod
@@ -114,7 +116,7 @@ class AppearanceModel(nn.Module, ABC):
         """RMS differences in linear RGB between mixtures of a stack's subjects and each of them.
 
         A mixture is made in the model's features, with weights of unit sum; `grams` are their
-        `channel_grams`. None: over the whole mask; else `texels` of it stand for all.
+        `compute_grams`. None: over the whole mask; else `texels` of it stand for all.
         """
 
     @property
@@ -140,7 +142,7 @@ class AppearanceModel(nn.Module, ABC):
         return features
 
     def project(self, texture: SkinTexture) -> Float[np.ndarray, "components"]:
-        """beta of a face: least squares over the texels of the mask that are known in it.
+        """Beta of a face: least squares over the texels of the mask that are known in it.
 
         Raises `InputError` for a texture of another size, or one that knows too few texels.
         """
@@ -153,8 +155,8 @@ class AppearanceModel(nn.Module, ABC):
         return self.statistics.project(inside, texture.mask[self.mask])
 
     def coefficients(self, stack: SubjectStack) -> Float[np.ndarray, "subjects components"]:
-        """beta of a whole stack in one pass, its unknown texels filled as `fit` fills them."""
-        return self.statistics.coefficients(self.columns(stack, self.mask))
+        """Beta of a whole stack in one pass, its unknown texels filled as `fit` fills them."""
+        return self.statistics.project_blocks(self.read_blocks(stack, self.mask))
 
     @torch.no_grad()
     def reconstruct(
@@ -165,12 +167,12 @@ class AppearanceModel(nn.Module, ABC):
         return np.asarray(rgb.movedim(0, -1).contiguous().numpy(force=True))
 
     def sample(self, count: int, seed: int) -> Float[np.ndarray, "samples components"]:
-        """beta of random faces, drawn from N(0, variances)."""
+        """Beta of random faces, drawn from N(0, variances)."""
         return self.statistics.sample(count, seed)
 
     def save(self, path: Path) -> None:
         """Write the model as .npz, whole or not at all. Raises `InputError` for another suffix."""
-        model_file.save(path, type(self).__name__, self.statistics, self.mask, self.colour)
+        _model_arrays.save_model(path, type(self).__name__, self.statistics, self.mask, self.colour)
 
     @classmethod
     def load(cls: type[Model], path: Path) -> Model:
@@ -178,4 +180,4 @@ class AppearanceModel(nn.Module, ABC):
 
         Nothing in it is unpickled.
         """
-        return cls(*model_file.load(path, cls.__name__))
+        return cls(*_model_arrays.load_model(path, cls.__name__))

@@ -11,6 +11,7 @@ import numpy as np
 from numpy.lib.format import open_memmap
 
 from skinnet.appearance.colour import CHANNELS, SkinColour
+from skinnet.appearance.skin_texture import SkinTexture
 from skinnet.appearance.stack import (
     FEATURES,
     MASKS,
@@ -20,7 +21,6 @@ from skinnet.appearance.stack import (
     open_stack,
     read_state,
 )
-from skinnet.appearance.subjects import SkinTexture
 from skinnet.errors import InputError
 from skinnet.files import write_text
 
@@ -28,7 +28,7 @@ FORMAT = 1
 """Version of the folder's layout."""
 
 
-def spool(
+def write_stack(
     folder: Path,
     subjects: Mapping[str, Callable[[], SkinTexture]],
     colour: SkinColour,
@@ -50,7 +50,7 @@ def spool(
         "format": FORMAT,
         "digest": _digest(list(subjects), colour, inputs),
         "names": list(subjects),
-        "colour": colour.record(),
+        "colour": colour.to_record(),
     }
     folder.mkdir(parents=True, exist_ok=True)
     done, size = _progress(folder, state["digest"])
@@ -106,5 +106,5 @@ def _write(folder: Path, index: int, texture: SkinTexture) -> None:
 
 
 def _digest(names: list[str], colour: SkinColour, inputs: str) -> str:
-    text = json.dumps([FORMAT, names, colour.record(), inputs])
+    text = json.dumps([FORMAT, names, colour.to_record(), inputs])
     return hashlib.sha256(text.encode()).hexdigest()

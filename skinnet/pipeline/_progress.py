@@ -11,7 +11,7 @@ from typing import Any
 from skinnet.files import write_text
 
 
-def say(text: str) -> None:
+def log(text: str) -> None:
     """A line of progress, on standard error, so that standard output holds results alone."""
     print(text, file=sys.stderr, flush=True)
 
