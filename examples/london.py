@@ -24,8 +24,8 @@ from skinnet.appearance.hybrid import HybridModel
 from skinnet.appearance.maps_file import save_maps
 from skinnet.cli import main as skinnet
 from skinnet.images.photograph import read_photo, srgb_to_linear
+from skinnet.pipeline._maps import invert
 from skinnet.pipeline.calibrate import ColourSettings
-from skinnet.pipeline.maps import invert
 from skinnet.shape.procedural_head import chart
 from skinnet.texture.warp import TextureSpace, Warped, warp_texture
 from train.synthetic.model_skins import save_skins

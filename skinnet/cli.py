@@ -58,9 +58,9 @@ def main(argv: Sequence[str] | None = None) -> int:
 
 def _pipeline(verb: str, arguments: list[str]) -> int:
     try:
-        from skinnet.pipeline.command import run
+        from skinnet.pipeline.command import run_verb
 
-        return run(verb, arguments, PIPELINE[verb])
+        return run_verb(verb, arguments, PIPELINE[verb])
     except ModuleNotFoundError as error:
         if (error.name or "").partition(".")[0] == "skinnet":
             raise

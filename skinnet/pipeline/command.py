@@ -11,9 +11,9 @@ from skinnet.files import made
 from skinnet.pipeline.sentence_parser import SentenceParser
 
 
-def run(verb: str, arguments: Sequence[str], help_: str) -> int:
+def run_verb(verb: str, arguments: Sequence[str], help_: str) -> int:
     """Run a verb; its module adds its arguments to a parser and takes what was parsed."""
-    room: Any = import_module(f"skinnet.pipeline.{verb.replace('-', '_')}")
+    room: Any = import_module(f"skinnet.pipeline._{verb.replace('-', '_')}")
     parser = SentenceParser(prog=f"skinnet {verb}", description=f"{help_[0].upper()}{help_[1:]}.")
     parser.add_argument(
         "--config", action="config", help="YAML with any of these options, as in configs/."

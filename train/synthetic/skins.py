@@ -20,7 +20,7 @@ from scipy.ndimage import binary_fill_holes, distance_transform_edt
 
 from skinnet.appearance.hybrid import HybridModel
 from skinnet.errors import InputError
-from skinnet.pipeline.maps import embedded
+from skinnet.pipeline._maps import embedded
 from skinnet.shape._default_model import default_model
 from skinnet.shape.procedural_head import chart
 from train.fitted import shrunk

@@ -11,7 +11,7 @@ from pipeline_scans import FAST, write_scan
 
 from skinnet.cli import main
 from skinnet.mesh.mesh_file import read_mesh
-from skinnet.pipeline.fit_file import load_fit
+from skinnet.pipeline._fit_archive import load_fit
 
 Refused = Callable[..., str]
 

@@ -13,11 +13,11 @@ from jsonargparse import ArgumentParser, Namespace
 from skinnet.appearance.skin_texture import SkinTexture
 from skinnet.errors import InputError
 from skinnet.files import atomic
-from skinnet.pipeline.calibrate import Colours, ColourSettings
-from skinnet.pipeline.fit_shape import Fitted, fitted
-from skinnet.pipeline.maps_output import ENDS, write_maps
+from skinnet.pipeline._fit_shape import Fitted, fitted
+from skinnet.pipeline._maps_writer import ENDS, write_maps
 from skinnet.pipeline._progress import digest, finished, log, write_record
-from skinnet.pipeline.scans import add_scan_arguments, each_scan, scan_options
+from skinnet.pipeline._scans import add_scan_arguments, each_scan, scan_options
+from skinnet.pipeline.calibrate import Colours, ColourSettings
 from skinnet.shape._icp import FitSettings
 from skinnet.shape.model import ShapeModel
 from skinnet.texture.mirror import mirror_vertices

@@ -14,7 +14,7 @@ from skinnet.appearance.measures import Curve, Measures
 from skinnet.appearance.stack import SubjectStack
 from skinnet.errors import InputError
 from skinnet.inference.panel import TILE
-from skinnet.pipeline.model_plots import hybrid_sheet, linear_sheet, write_measures
+from skinnet.pipeline._model_figures import hybrid_sheet, linear_sheet, write_measures
 
 
 def measures(name: str, shape: bool) -> Measures:
@@ -34,7 +34,9 @@ def test_curves_are_written_without_pyplot(tmp_path: Path, shape: bool) -> None:
 
 
 def test_no_global_state_of_matplotlib_is_touched() -> None:
-    program = "import sys, skinnet.pipeline.model_plots; print('matplotlib.pyplot' in sys.modules)"
+    program = (
+        "import sys, skinnet.pipeline._model_figures; print('matplotlib.pyplot' in sys.modules)"
+    )
     done = subprocess.run(
         [sys.executable, "-c", program], capture_output=True, text=True, check=True
     )

@@ -12,8 +12,8 @@ from skinnet.errors import InputError
 from skinnet.mesh.mesh import Mesh
 from skinnet.mesh.mesh_file import read_mesh
 from skinnet.mesh.repair import check_mesh
-from skinnet.pipeline.command import add_output, output_folder
 from skinnet.pipeline._progress import log
+from skinnet.pipeline.command import add_output, output_folder
 from skinnet.shape.landmarks import check_landmarks, read_landmarks
 from skinnet.shape.model import ShapeModel
 from skinnet.shape.model_formats import load_shape_model

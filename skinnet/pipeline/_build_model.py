@@ -26,12 +26,12 @@ from skinnet.files import write_text
 from skinnet.images.photograph import read_photo, write_png
 from skinnet.inference.panel import TILE
 from skinnet.mesh.mesh_file import read_mesh
-from skinnet.pipeline.command import add_output, output_folder
-from skinnet.pipeline.fit_file import load_fit
-from skinnet.pipeline.model_plots import Renderer, hybrid_sheet, linear_sheet, write_measures
+from skinnet.pipeline._fit_archive import load_fit
+from skinnet.pipeline._model_figures import Renderer, hybrid_sheet, linear_sheet, write_measures
 from skinnet.pipeline._progress import digest, log
+from skinnet.pipeline._scans import OUTPUT, ScanOptions
+from skinnet.pipeline.command import add_output, output_folder
 from skinnet.pipeline.relight import RelightSettings
-from skinnet.pipeline.scans import OUTPUT, ScanOptions
 
 FOLDER = Path("skinmodel")
 MAPS = "_maps.npz"

@@ -12,10 +12,10 @@ from skinnet.appearance.skin_texture import SkinTexture
 from skinnet.images.photograph import read_photo, write_png
 from skinnet.inference.panel import picture, round_top, sheet
 from skinnet.mesh.mesh_file import read_mesh, write_mesh
-from skinnet.pipeline.build_model import MAPS
-from skinnet.pipeline.command import add_output, output_folder
-from skinnet.pipeline.maps_output import covered, pigment_tiles, shown, textured
+from skinnet.pipeline._build_model import MAPS
+from skinnet.pipeline._maps_writer import covered, pigment_tiles, shown, textured
 from skinnet.pipeline._progress import log
+from skinnet.pipeline.command import add_output, output_folder
 from skinnet.pipeline.relight import RelightSettings
 
 PIGMENTS = ("melanin", "hemoglobin")

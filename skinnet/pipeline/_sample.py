@@ -11,7 +11,7 @@ from skinnet.appearance.maps_file import save_maps
 from skinnet.errors import InputError
 from skinnet.images.photograph import linear_to_srgb, to_uint8, write_png
 from skinnet.inference.panel import picture, pigment_map, round_top, sheet
-from skinnet.pipeline.build_model import FOLDER
+from skinnet.pipeline._build_model import FOLDER
 from skinnet.pipeline.command import add_output, output_folder
 
 

@@ -11,11 +11,10 @@ from skinnet.errors import InputError
 from skinnet.images.photograph import write_png
 from skinnet.mesh.mesh import Mesh
 from skinnet.mesh.mesh_file import write_mesh
-from skinnet.pipeline.fit_file import load_fit, save_fit
-from skinnet.pipeline.initial_pose import find_initial_pose
-from skinnet.pipeline.preview import fit_sheet
+from skinnet.pipeline._fit_archive import load_fit, save_fit
+from skinnet.pipeline._fit_picture import fit_sheet
 from skinnet.pipeline._progress import digest, finished, log, write_record
-from skinnet.pipeline.scans import (
+from skinnet.pipeline._scans import (
     Scan,
     ScanOptions,
     add_scan_arguments,
@@ -24,6 +23,7 @@ from skinnet.pipeline.scans import (
     place,
     scan_options,
 )
+from skinnet.pipeline.initial_pose import find_initial_pose
 from skinnet.shape._icp import FitSettings
 from skinnet.shape.model import ShapeModel
 from skinnet.shape.registration import Registration, register
