@@ -7,7 +7,7 @@ from torch import Tensor
 
 from benchmarks.running_statistics import Moments
 from benchmarks.scene import Pixels, Scene, under_daylight
-from skinnet.physics.decoder import SkinDecoder
+from skinnet.physics import SkinDecoder
 
 DIRECTIONS = (
     (0.4143, 0.3570, 0.8372),

@@ -18,9 +18,7 @@ import torch.nn.functional as F
 from torch import Tensor
 
 from benchmarks.report import Results, main
-from skinnet.physics.camera import LIGHTS, inverse3
-from skinnet.physics.capture import Capture
-from skinnet.physics.decoder import SkinDecoder
+from skinnet.physics import LIGHTS, Capture, SkinDecoder
 
 Picture = Callable[[Tensor, Tensor, Capture], Tensor]
 
@@ -68,10 +66,10 @@ class SpectralGrid:
         matrix = self.camera.matrix(capture)
         if self.at_once:
             return (matrix.mT @ spectra.flatten(2)).unflatten(-1, f_mel.shape[1:])
-        light = self.camera.light(capture.light, capture.temperature)
+        light = self.camera.mix_lights(capture.light, capture.temperature)
         weights = light[..., None] * self.camera.sensitivity(capture.camera)
         raw = [(spectra * weights[:, :, c, None, None]).sum(1) for c in range(3)]
-        to_srgb = inverse3(weights.mT @ weights) @ weights.mT @ matrix
+        to_srgb = torch.linalg.inv(weights.mT @ weights) @ weights.mT @ matrix
         return torch.einsum("bchw,bck->bkhw", torch.stack(raw, 1), to_srgb)
 
 

@@ -11,9 +11,7 @@ from PIL import Image
 
 from skinnet.images.faces import resize
 from skinnet.images.photograph import linear_to_srgb, srgb_to_linear, to_uint8
-from skinnet.physics.camera import inverse3, srgb_to_xyz
-from skinnet.physics.daylight import daylight
-from skinnet.physics.spectra import observer, table
+from skinnet.physics import load_light, load_observer, srgb_to_xyz
 
 Photograph = NDArray[np.uint8]
 
@@ -34,9 +32,8 @@ def balance(temperature: float) -> NDArray[np.float64]:
 
 
 def _white(temperature: float) -> torch.Tensor:
-    components = torch.stack(list(table("daylight").values()))
-    xyz = daylight(torch.tensor(temperature, dtype=torch.float64), components) @ observer()
-    return inverse3(srgb_to_xyz()) @ (xyz / xyz[1])
+    xyz = load_light(f"D{temperature:g}K") @ load_observer()
+    return torch.linalg.solve(srgb_to_xyz(), xyz / xyz[1])
 
 
 def jpeg(photograph: Photograph) -> Photograph:

@@ -38,7 +38,7 @@ from skinnet._version import __version__
 from skinnet.errors import InputError
 from skinnet.network.autoencoder import SkinAutoencoder
 from skinnet.network.weights import SHIPPED, load_weights, read_weights
-from skinnet.physics.decoder import SkinDecoder
+from skinnet.physics import SkinDecoder
 from train.synthetic.faces import Lots, SyntheticFaces
 
 SHARED = Path(__file__).parents[2] / "shared" / "data"

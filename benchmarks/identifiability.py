@@ -20,9 +20,7 @@ from torch import Tensor, nn
 from torch.utils.data import default_collate
 
 from benchmarks.report import Results, main
-from skinnet.physics.camera import SpectralCamera
-from skinnet.physics.capture import Capture
-from skinnet.physics.decoder import SkinDecoder
+from skinnet.physics import Capture, SkinDecoder, SpectralCamera
 from train.synthetic.scene_sampling import (
     HEMOGLOBIN,
     MELANIN,

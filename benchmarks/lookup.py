@@ -19,11 +19,15 @@ from scipy.spatial import cKDTree
 from torch import Tensor
 
 from benchmarks.report import Results, main
-from skinnet.physics.inversion import F_BLOOD_RANGE, F_MEL_RANGE, SkinInverse
-from skinnet.physics.lookup import SkinLookup
-from skinnet.physics.nearest_colour import NearestNode
-from skinnet.physics.reflectance import SkinReflectance
-from skinnet.physics.sources import spectrum_matrix
+from skinnet.physics import (
+    F_BLOOD_RANGE,
+    F_MEL_RANGE,
+    NearestColour,
+    SkinInverse,
+    SkinLookup,
+    SkinReflectance,
+    load_spectrum_to_srgb,
+)
 from train.synthetic.face_painting import Paint, paint_skin
 from train.synthetic.scene_sampling import draw_lot
 
@@ -83,10 +87,10 @@ def beside_a_tree(
 ) -> Results:
     """Times of building and asking both, and whether they and brute force agree."""
     nodes = table.reshape(-1, 3)
-    ours, tree = NearestNode(table), cKDTree(nodes)
+    ours, tree = NearestColour(table), cKDTree(nodes)
     times: dict[str, list[float]] = {name: [] for name in ("build", "tree_build", "query", "tree")}
     for _ in range(rounds):
-        times["build"].append(least(lambda: NearestNode(table), 1))
+        times["build"].append(least(lambda: NearestColour(table), 1))
         times["tree_build"].append(least(lambda: cKDTree(nodes), 1))
         times["query"].append(least(lambda: ours(colours), REPEATS))
         times["tree"].append(least(lambda: tree.query(colours, workers=WORKERS), 1))
@@ -145,7 +149,7 @@ def measure(size: int = SIZE, nodes: int = NODES, rounds: int = ROUNDS) -> Resul
     """Every figure, by name."""
     lookup, matrix = (
         SkinLookup(SkinReflectance(dtype=torch.float64)),
-        spectrum_matrix("D65", "mean"),
+        load_spectrum_to_srgb("D65", "mean"),
     )
     both, skin = face(lookup, matrix, size)
     inverse = lookup.inverse(matrix, (nodes, nodes))

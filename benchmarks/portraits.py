@@ -24,7 +24,7 @@ from benchmarks.typology import GROUPS, group, typology_angle
 from skinnet.images.faces import crop_box, find_face, resize, skin_mask
 from skinnet.images.photograph import read_photo, srgb_to_linear
 from skinnet.network.autoencoder import SkinMaps
-from skinnet.physics.decoder import SkinDecoder
+from skinnet.physics import SkinDecoder
 
 LARGEST = 256
 """Longest side of the crops, in pixels; smaller ones are left as they are."""

@@ -12,8 +12,7 @@ from torch import Tensor
 from benchmarks.scene import Pixels, Scene, on
 from skinnet.images.faces import resize
 from skinnet.network.autoencoder import SkinAutoencoder, SkinMaps
-from skinnet.physics.capture import Capture
-from skinnet.physics.decoder import SkinDecoder
+from skinnet.physics import Capture, SkinDecoder
 
 LEAST_SIDE = 16
 

@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 from torch import Tensor
 
 from benchmarks.typology import typology_angle
-from skinnet.physics.decoder import SkinDecoder
+from skinnet.physics import SkinDecoder
 from train.batch import Batch
 
 

@@ -14,11 +14,14 @@ from jaxtyping import Float
 from torch import Tensor
 
 from benchmarks.report import Results, main
-from skinnet.physics.camera import spectrum_to_srgb
-from skinnet.physics.daylight import daylight
-from skinnet.physics.optics import PRESETS, SkinOptics
-from skinnet.physics.reflectance import SkinReflectance
-from skinnet.physics.spectra import observer, table
+from skinnet.physics import (
+    PRESETS,
+    SkinOptics,
+    SkinReflectance,
+    load_light,
+    load_observer,
+    spectrum_to_srgb,
+)
 
 Model = Callable[[Tensor, Tensor], Tensor]
 
@@ -131,10 +134,7 @@ def split_half(target: Tensor, radii: tuple[float, ...], splits: int = SPLITS) -
 
 def d65_matrix() -> Float[Tensor, "wavelength 3"]:
     """Spectrum to linear sRGB under D65, the observer as the camera."""
-    light = daylight(
-        torch.tensor(6504.0, dtype=torch.float64), torch.stack(list(table("daylight").values()))
-    )
-    return spectrum_to_srgb(light, observer(), observer())
+    return spectrum_to_srgb(load_light("D6504K"), load_observer(), load_observer())
 
 
 def from_rgb(

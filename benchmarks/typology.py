@@ -4,7 +4,7 @@ import torch
 from jaxtyping import Float
 from torch import Tensor
 
-from skinnet.physics.camera import srgb_to_xyz
+from skinnet.physics import srgb_to_xyz
 
 GROUPS = {
     "very_light": 55.0,

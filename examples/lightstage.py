@@ -23,7 +23,7 @@ from skinnet.cli import main as skinnet
 from skinnet.images.photograph import linear_to_srgb, to_uint8
 from skinnet.mesh.mesh import Mesh
 from skinnet.mesh.mesh_file import write_mesh
-from skinnet.physics.sources import spectrum_matrix
+from skinnet.physics import load_spectrum_to_srgb
 from skinnet.shape._default_model import default_model
 from skinnet.shape.landmarks import write_landmarks
 from train.synthetic.face_painting import Paint, paint_skin
@@ -109,7 +109,7 @@ def main() -> None:
     parser.add_argument("--texels", type=int, default=1024)
     options = parser.parse_args()
     options.output.mkdir(parents=True, exist_ok=True)
-    colour = SkinColour(spectrum_matrix(LIGHT, CAMERA).numpy(), FILTER)
+    colour = SkinColour(load_spectrum_to_srgb(LIGHT, CAMERA).numpy(), FILTER)
     scans = [options.output / f"person_{number:02}.obj" for number in range(options.people)]
     for number, scan in enumerate(scans):
         if not scan.is_file():

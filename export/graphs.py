@@ -13,8 +13,7 @@ from skinnet.network.autoencoder import (
     WHITE_BALANCE_MAX,
     SkinAutoencoder,
 )
-from skinnet.physics.capture import Capture
-from skinnet.physics.decoder import SkinDecoder, srgb
+from skinnet.physics import Capture, SkinDecoder, to_display
 
 Output = dict[str, Any]
 
@@ -69,7 +68,7 @@ class DecoderGraph(nn.Module):
     ) -> Tensor:  # fmt: skip
         capture = Capture(light, temperature, camera, white_balance)
         maps = (melanin, hemoglobin, shading, specular, offset.movedim(-1, 1))
-        return srgb(self.decoder.compose(*maps, capture)).movedim(1, -1)
+        return to_display(self.decoder.compose(*maps, capture)).movedim(1, -1)
 
 
 def example(batch: int, height: int, width: int) -> Tensor:

@@ -23,7 +23,7 @@ from skinnet.files import written_together
 from skinnet.inference.onnx_model import FORMAT, decoder_path
 from skinnet.network.autoencoder import SkinAutoencoder
 from skinnet.network.weights import save_weights
-from skinnet.physics.camera import LIGHTS
+from skinnet.physics import LIGHTS
 
 OPSET = 20
 LICENSE = "MIT"

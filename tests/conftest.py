@@ -15,8 +15,7 @@ install_import_hook("skinnet", "beartype.beartype")
 
 import torch  # noqa: E402
 
-from skinnet.physics.camera import COMPONENTS, LIGHTS  # noqa: E402
-from skinnet.physics.capture import Capture  # noqa: E402
+from skinnet.physics import CAMERA_COMPONENTS, LIGHTS, Capture  # noqa: E402
 
 settings.register_profile(
     "skinnet", deadline=None, max_examples=25, derandomize=True, database=None
@@ -41,7 +40,10 @@ def random_capture() -> Callable[..., Capture]:
 
 
 def _random_capture(
-    *shape: int, seed: int = 0, dtype: torch.dtype = torch.float64, components: int = COMPONENTS
+    *shape: int,
+    seed: int = 0,
+    dtype: torch.dtype = torch.float64,
+    components: int = CAMERA_COMPONENTS,
 ) -> Capture:
     generator = torch.Generator().manual_seed(seed)
     drawn = [torch.rand(*shape, n, generator=generator, dtype=dtype) for n in (len(LIGHTS), 1)]

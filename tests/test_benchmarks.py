@@ -9,8 +9,7 @@ import torch
 
 from benchmarks import appearance, decoder, lookup, report, spectra
 from benchmarks.biofacenet import BioFaceNetShape
-from skinnet.physics.optics import PRESETS
-from skinnet.physics.reflectance import SkinReflectance
+from skinnet.physics import PRESETS, SkinReflectance
 
 
 @pytest.fixture(scope="module")

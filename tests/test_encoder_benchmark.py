@@ -19,8 +19,7 @@ from benchmarks.scene import Pixels, Scene, under_daylight
 from benchmarks.scores import Scores
 from benchmarks.typology import GROUPS, group, typology_angle
 from skinnet.network.autoencoder import AutoencoderConfig, SkinAutoencoder, SkinMaps
-from skinnet.physics.camera import SpectralCamera
-from skinnet.physics.decoder import SkinDecoder
+from skinnet.physics import SkinDecoder, SpectralCamera
 
 PIGMENT = {"rmse", "rmse_ratio", "r_pixel", "r_image", "grid_rmse"}
 COLUMNS = {"diffuse", "specular", "albedo", "reconstruction", "mask_iou", "leak", "group_ratio"}

@@ -5,7 +5,7 @@ import torch
 
 from benchmarks import identifiability
 from benchmarks.identifiability import colours, draw, read, score
-from skinnet.physics.decoder import SkinDecoder
+from skinnet.physics import SkinDecoder
 
 
 @pytest.fixture(autouse=True)

@@ -5,7 +5,7 @@ from typing import NamedTuple
 from torch import Tensor
 
 from skinnet.network.autoencoder import SkinMaps
-from skinnet.physics.capture import Capture
+from skinnet.physics import Capture
 
 
 class Batch(NamedTuple):

@@ -12,7 +12,7 @@ from PIL import Image
 from torch import Tensor
 
 from skinnet.network.autoencoder import F_BLOOD_MAX, F_MEL_MAX, Reading
-from skinnet.physics.decoder import srgb
+from skinnet.physics import to_display
 from train.batch import Batch
 from train.task import Batches, by_name
 
@@ -94,8 +94,8 @@ def _row(
         _grey(maps.shading / 1.5),
         _grey(maps.specular / 0.3),
         _grey(maps.mask),
-        srgb(maps.offset),
-        srgb(reconstruction),
+        to_display(maps.offset),
+        to_display(reconstruction),
     ]
     return torch.cat(columns, -1)
 

@@ -19,7 +19,7 @@ from skinnet.appearance.skin_texture import SkinTexture
 from skinnet.errors import InputError
 from skinnet.mesh.mesh_file import read_mesh
 from skinnet.network.autoencoder import F_BLOOD_MAX, F_MEL_MAX
-from skinnet.physics.decoder import SkinDecoder
+from skinnet.physics import SkinDecoder
 from skinnet.render.scene import Scene
 from skinnet.render.views import front
 from skinnet.render.visibility import geometry

@@ -18,7 +18,7 @@ from skinnet.network.autoencoder import AutoencoderConfig, Reading, SkinAutoenco
 from skinnet.network.checkpoint import describe
 from skinnet.network.encoder import WIDTHS
 from skinnet.network.weights import read_weights
-from skinnet.physics.capture import Capture
+from skinnet.physics import Capture
 from train.batch import Batch
 from train.metrics import measure
 

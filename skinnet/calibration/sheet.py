@@ -9,7 +9,7 @@ from scipy.optimize import nnls
 from scipy.spatial import cKDTree
 
 from skinnet.errors import InputError
-from skinnet.physics.colour_surface import Surface
+from skinnet.physics._colour_surface import Surface
 
 NEWTON = 3.0
 """Nodes that a step to a foot crosses at most."""

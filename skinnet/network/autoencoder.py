@@ -9,7 +9,7 @@ from kornia.color import rgb_to_linear_rgb
 from torch import Tensor, nn
 
 from skinnet.network.encoder import WIDTHS, SkinEncoder
-from skinnet.physics.camera import COMPONENTS, LIGHTS
+from skinnet.physics.camera import CAMERA_COMPONENTS, LIGHTS
 from skinnet.physics.capture import Capture
 from skinnet.physics.decoder import SkinDecoder
 
@@ -29,7 +29,7 @@ MIRED = (40.0, 250.0)
 """Daylight in units in which its change is even to the eye, 25,000 K to 4,000 K."""
 
 MAPS = 5
-GLOBALS = len(LIGHTS) + 1 + COMPONENTS + 2
+GLOBALS = len(LIGHTS) + 1 + CAMERA_COMPONENTS + 2
 
 
 class SkinMaps(NamedTuple):
@@ -62,7 +62,7 @@ def controls(
     """
     maps, globals = _at_least_float32(maps), _at_least_float32(globals)
     melanin, hemoglobin, shading, specular, mask = maps.unbind(1)
-    light, temperature, camera, balance = globals.split([len(LIGHTS), 1, COMPONENTS, 2], -1)
+    light, temperature, camera, balance = globals.split([len(LIGHTS), 1, CAMERA_COMPONENTS, 2], -1)
     mired = MIRED[0] + (MIRED[1] - MIRED[0]) * temperature.squeeze(-1).sigmoid()
     capture = Capture(
         light.softmax(-1),

@@ -6,15 +6,18 @@ import torch
 from jaxtyping import Float
 from torch import Tensor, nn
 
+from skinnet.physics._linear_algebra import invert_3x3
+from skinnet.physics._parameters import register_constant
+from skinnet.physics._tables import read_table
 from skinnet.physics.capture import Capture
-from skinnet.physics.daylight import daylight
-from skinnet.physics.parameters import register_constant
-from skinnet.physics.spectra import cameras, observer, table
+from skinnet.physics.illuminants import daylight
+from skinnet.physics.spectra import load_cameras, load_observer
+from skinnet.physics.srgb import srgb_to_xyz
 
-LIGHTS = ("D", *table("illuminants"))
+LIGHTS = ("D", *read_table("illuminants"))
 """Names of the lights in a mixture: daylight of the given temperature, then CIE illuminants."""
 
-COMPONENTS = 6
+CAMERA_COMPONENTS = 6
 """Components of the camera basis; they explain 92 % of the variance of 52 cameras."""
 
 
@@ -38,7 +41,7 @@ class SpectralCamera(nn.Module):
 
     def __init__(
         self,
-        components: int = COMPONENTS,
+        components: int = CAMERA_COMPONENTS,
         mean: Float[Tensor, "wavelength 3"] | None = None,
         basis: Float[Tensor, "components wavelength 3"] | None = None,
         lights: Float[Tensor, "lamps wavelength"] | None = None,
@@ -46,11 +49,11 @@ class SpectralCamera(nn.Module):
     ):
         super().__init__()
         dtype = dtype or torch.get_default_dtype()
-        measured_mean, measured_basis, explained = camera_basis()
+        measured_mean, measured_basis, explained = _camera_basis()
         constants = {
             "mean": measured_mean if mean is None else mean,
             "basis": measured_basis[:components] if basis is None else basis,
-            "lights": _unit_sum(torch.stack(list(table("illuminants").values())))
+            "lights": _unit_sum(torch.stack(list(read_table("illuminants").values())))
             if lights is None
             else lights,
         }
@@ -58,8 +61,8 @@ class SpectralCamera(nn.Module):
             register_constant(self, name, value, dtype)
         tables = {
             "explained": explained[:components],
-            "observer": observer(),
-            "daylight": torch.stack(list(table("daylight").values())),
+            "observer": load_observer(),
+            "daylight": torch.stack(list(read_table("daylight").values())),
         }
         for name, value in tables.items():
             register_constant(self, name, value, dtype, persistent=False)
@@ -80,12 +83,12 @@ class SpectralCamera(nn.Module):
     def matrix(self, capture: Capture) -> Float[Tensor, "*batch wavelength 3"]:
         """The map from a spectrum to linear sRGB, which is linear for a given light and camera."""
         sensitivity = self.sensitivity(capture.camera)
-        power = self.light(capture.light, capture.temperature)
+        power = self.mix_lights(capture.light, capture.temperature)
         red, blue = capture.white_balance.unbind(-1)
         gain = torch.stack([red, torch.zeros_like(red), blue], -1).exp()
         return spectrum_to_srgb(power, sensitivity, self.observer, gain)
 
-    def light(
+    def mix_lights(
         self, weights: Float[Tensor, "*batch lights"], temperature: Float[Tensor, "*batch"]
     ) -> Float[Tensor, "*batch wavelength"]:
         """Relative power of a mixture, of unit sum."""
@@ -120,13 +123,13 @@ def spectrum_to_srgb(
     """
     white = (light[..., None] * sensitivity).sum(-2, keepdim=True)
     sensitivity = sensitivity / white
-    to_xyz = inverse3(sensitivity.mT @ sensitivity) @ (sensitivity.mT @ observer)  # M transposed
+    to_xyz = invert_3x3(sensitivity.mT @ sensitivity) @ (sensitivity.mT @ observer)  # M transposed
     balanced = light[..., None] * sensitivity
     if gain is not None:
         balanced = balanced * gain[..., None, :]
     srgb = srgb_to_xyz().to(to_xyz)
     to_xyz = to_xyz * (srgb.sum(-1) / to_xyz.sum(-2, keepdim=True))
-    to_srgb = to_xyz @ inverse3(srgb).mT
+    to_srgb = to_xyz @ invert_3x3(srgb).mT
     return balanced @ (to_srgb / to_srgb.sum(-2, keepdim=True))
 
 
@@ -140,38 +143,14 @@ def apply_matrix(
     return product.reshape(*product.shape[:-2], *spectra.shape[batch:-1], 3)
 
 
-def inverse3(matrix: Float[Tensor, "*batch 3 3"]) -> Float[Tensor, "*batch 3 3"]:
-    """Inverse of 3 x 3 matrices by cofactors; ONNX has no operator for it."""
-    a, b, c = matrix.unbind(-1)
-    rows = torch.stack([_cross(b, c), _cross(c, a), _cross(a, b)], -2)
-    return rows / (a * rows[..., 0, :]).sum(-1)[..., None, None]
-
-
-def _cross(a: Float[Tensor, "*batch 3"], b: Float[Tensor, "*batch 3"]) -> Float[Tensor, "*batch 3"]:
-    return a.roll(-1, -1) * b.roll(-2, -1) - a.roll(-2, -1) * b.roll(-1, -1)
-
-
-def srgb_to_xyz() -> Float[Tensor, "3 3"]:
-    """Linear sRGB to XYZ from the primaries and the D65 white of IEC 61966-2-1."""
-    primaries = torch.tensor([[0.64, 0.33], [0.30, 0.60], [0.15, 0.06]], dtype=torch.float64)
-    white = torch.tensor([0.3127, 0.3290], dtype=torch.float64)
-    xyz = _chromaticity_to_xyz(primaries).mT
-    return xyz * (inverse3(xyz) @ _chromaticity_to_xyz(white))
-
-
-def _chromaticity_to_xyz(xy: Float[Tensor, "*batch 2"]) -> Float[Tensor, "*batch 3"]:
-    x, y = xy.unbind(-1)
-    return torch.stack([x / y, torch.ones_like(x), (1 - x - y) / y], -1)
-
-
 @cache
-def camera_basis() -> tuple[Tensor, Tensor, Tensor]:
+def _camera_basis() -> tuple[Tensor, Tensor, Tensor]:
     """Mean [33, 3], components [51, 33, 3] and explained variance [51] of the measured cameras.
 
     A joint principal component analysis of the three channels, each of unit sum; a component is
     scaled to one standard deviation over the 52 cameras.
     """
-    curves = torch.stack(list(cameras().values()))
+    curves = torch.stack(list(load_cameras().values()))
     mean = curves.mean(0)
     _, values, vectors = torch.linalg.svd((curves - mean).flatten(1), full_matrices=False)
     kept = len(curves) - 1

@@ -2,15 +2,14 @@
 
 import torch
 from jaxtyping import Float
-from kornia.color import linear_rgb_to_rgb
 from torch import Tensor, nn
 
 from skinnet.errors import InputError
+from skinnet.physics._parameters import check_fraction
 from skinnet.physics.camera import SpectralCamera, apply_matrix
 from skinnet.physics.capture import Capture
 from skinnet.physics.lookup import SkinLookup
 from skinnet.physics.optics import SkinOptics
-from skinnet.physics.parameters import check_fraction
 from skinnet.physics.reflectance import SkinReflectance
 
 
@@ -109,9 +108,3 @@ class SkinDecoder(nn.Module):
             f_blood.reshape(-1, *size),
         )
         return image.reshape(*batch, 3, *size)
-
-
-def srgb(linear: Float[Tensor, "*batch 3 height width"]) -> Float[Tensor, "*batch 3 height width"]:
-    """Display sRGB in [0, 1] of linear sRGB, clipped to the gamut."""
-    display: Tensor = linear_rgb_to_rgb(linear.clamp(0, 1))
-    return display

@@ -10,8 +10,8 @@ from jaxtyping import Bool, Float, Shaped
 from torch import Tensor
 
 from skinnet.errors import InputError
-from skinnet.physics.colour_surface import Surface
-from skinnet.physics.nearest_colour import NearestNode
+from skinnet.physics._colour_surface import Surface
+from skinnet.physics.nearest_colour import NearestColour
 from skinnet.physics.reflectance import SkinReflectance
 
 F_MEL_RANGE = (0.0, 0.43)
@@ -94,7 +94,7 @@ class SkinInverse:
         )
         halves = _halves(reflectance, matrix, self.mel, self.blood)
         self.colours = torch.from_numpy(halves[::2, ::2].copy())
-        self._nearest = NearestNode(halves[::2, ::2])
+        self._nearest = NearestColour(halves[::2, ::2])
         self._nodes = np.ascontiguousarray(halves[::2, ::2].reshape(-1, 3).T)
         self._surface = Surface(halves)
 

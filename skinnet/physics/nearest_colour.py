@@ -18,7 +18,7 @@ _ROUNDING = 1e-6
 """Of the float32 in which nodes are matched, as a share of the coordinates."""
 
 
-class NearestNode:
+class NearestColour:
     """Finds the nearest of the nodes of a grid of colours, in Euclidean distance.
 
     |q - m|^2 - |q - n|^2 is affine in q: a node m that loses to n at every corner of a box loses to

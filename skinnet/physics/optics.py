@@ -9,8 +9,9 @@ import torch
 from torch import Tensor
 
 from skinnet.errors import InputError
-from skinnet.physics.kubelka_munk import kubelka_munk, kubelka_munk_printed
-from skinnet.physics.spectra import WAVELENGTHS, table
+from skinnet.physics._tables import read_table
+from skinnet.physics.dermis import kubelka_munk, kubelka_munk_printed
+from skinnet.physics.spectra import WAVELENGTHS
 
 Constant = float | int | Tensor
 
@@ -22,7 +23,7 @@ def _constant(value: Any, unit: str, low: float, high: float, source: str) -> An
 
 def _spectrum(name: str, column: str, unit: str, source: str) -> Any:
     note = {"unit": unit, "range": (0.0, 1e7), "source": source}
-    return field(default_factory=lambda: table(name)[column], metadata=note)
+    return field(default_factory=lambda: read_table(name)[column], metadata=note)
 
 
 @dataclass(frozen=True, eq=False)

@@ -6,8 +6,8 @@ import torch
 from jaxtyping import Float
 from torch import Tensor, nn
 
+from skinnet.physics._parameters import check_fraction, register_constant
 from skinnet.physics.optics import SkinOptics
-from skinnet.physics.parameters import check_fraction, register_constant
 from skinnet.physics.spectra import WAVELENGTHS
 
 

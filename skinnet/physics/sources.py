@@ -12,9 +12,10 @@ from jaxtyping import Float
 from torch import Tensor
 
 from skinnet.errors import InputError
-from skinnet.physics.camera import SpectralCamera, spectrum_to_srgb
-from skinnet.physics.daylight import daylight
-from skinnet.physics.spectra import WAVELENGTHS, cameras, observer, table
+from skinnet.physics._tables import read_table
+from skinnet.physics.camera import spectrum_to_srgb
+from skinnet.physics.illuminants import daylight
+from skinnet.physics.spectra import WAVELENGTHS, load_cameras, load_observer
 
 MEAN = "mean"
 """Name of the mean of the measured cameras."""
@@ -23,7 +24,7 @@ DAYLIGHT = re.compile(r"[dD](\d{2}|\d{4,5}\s*[kK]?)$")
 TEMPERATURES = (4000.0, 25000.0)
 
 
-def light(name: str) -> Float[Tensor, "wavelength"]:
+def load_light(name: str) -> Float[Tensor, "wavelength"]:
     """Relative power of a light [33], of unit sum, float64.
 
     `name` is D65, D50 or another daylight (D5500K), a CIE illuminant of `skinnet.physics`, or a
@@ -35,28 +36,28 @@ def light(name: str) -> Float[Tensor, "wavelength"]:
         return power / power.sum()
     if (day := DAYLIGHT.match(name)) is not None:
         return _daylight(name, day.group(1))
-    power = _named(name, table("illuminants"), "light", "D65 or another daylight, or ")
+    power = _named(name, read_table("illuminants"), "light", "D65 or another daylight, or ")
     return power / power.sum()
 
 
-def camera(name: str) -> Float[Tensor, "wavelength 3"]:
+def load_camera(name: str) -> Float[Tensor, "wavelength 3"]:
     """Sensitivities of a camera [33, 3], R, G, B, each of unit sum, float64.
 
     `name` is one of the 52 measured cameras, `mean`, or a .csv file of wavelength in nm and three
-    sensitivities. Raises `InputError` as `light` does.
+    sensitivities. Raises `InputError` as `load_light` does.
     """
     if name.lower().endswith(".csv"):
         curves = _spectra(Path(name), 3)
         return curves / curves.sum(0)
-    measured = cameras()
+    measured = load_cameras()
     if name.lower() == MEAN:
         return torch.stack(list(measured.values())).mean(0)
     return _named(name, measured, "camera", f"{MEAN}, or ")
 
 
-def spectrum_matrix(light_name: str, camera_name: str) -> Float[Tensor, "wavelength 3"]:
+def load_spectrum_to_srgb(light_name: str, camera_name: str) -> Float[Tensor, "wavelength 3"]:
     """The map from a spectrum [33] to white-balanced linear sRGB under a light and a camera."""
-    return spectrum_to_srgb(light(light_name), camera(camera_name), observer())
+    return spectrum_to_srgb(load_light(light_name), load_camera(camera_name), load_observer())
 
 
 def _named(
@@ -81,9 +82,7 @@ def _daylight(name: str, number: str) -> Float[Tensor, "wavelength"]:
         raise InputError(
             f"Daylight has {TEMPERATURES[0]:g} to {TEMPERATURES[1]:g} K; got {name!r}."
         )
-    standard = SpectralCamera(dtype=torch.float64)
-    power = daylight(torch.tensor(kelvin, dtype=torch.float64), standard.daylight)
-    return power / power.sum()
+    return daylight(torch.tensor(kelvin, dtype=torch.float64))
 
 
 def _spectra(path: Path, columns: int) -> Float[Tensor, "wavelength columns"]:

@@ -1,9 +1,24 @@
-"""The colour space sRGB: its primaries and its luminance (IEC 61966-2-1)."""
+"""The colour space sRGB: its primaries, luminance and transfer curve (IEC 61966-2-1)."""
 
+import torch
 from jaxtyping import Float
+from kornia.color import linear_rgb_to_rgb
 from torch import Tensor
 
-from skinnet.physics.camera import srgb_to_xyz
+from skinnet.physics._linear_algebra import invert_3x3
+
+
+def srgb_to_xyz() -> Float[Tensor, "3 3"]:
+    """Linear sRGB to XYZ from the primaries and the D65 white of IEC 61966-2-1."""
+    primaries = torch.tensor([[0.64, 0.33], [0.30, 0.60], [0.15, 0.06]], dtype=torch.float64)
+    white = torch.tensor([0.3127, 0.3290], dtype=torch.float64)
+    xyz = _chromaticity_to_xyz(primaries).mT
+    return xyz * (invert_3x3(xyz) @ _chromaticity_to_xyz(white))
+
+
+def _chromaticity_to_xyz(xy: Float[Tensor, "*batch 2"]) -> Float[Tensor, "*batch 3"]:
+    x, y = xy.unbind(-1)
+    return torch.stack([x / y, torch.ones_like(x), (1 - x - y) / y], -1)
 
 
 def luminance(
@@ -31,3 +46,11 @@ def luminance(
     """
     weights = srgb_to_xyz()[1].to(linear)
     return (linear * weights[:, None, None]).sum(-3, keepdim=True)
+
+
+def to_display(
+    linear: Float[Tensor, "*batch 3 height width"],
+) -> Float[Tensor, "*batch 3 height width"]:
+    """Display sRGB in [0, 1] of linear sRGB, clipped to the gamut."""
+    display: Tensor = linear_rgb_to_rgb(linear.clamp(0, 1))
+    return display

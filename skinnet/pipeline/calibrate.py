@@ -19,7 +19,7 @@ from skinnet.images.photograph import srgb_to_linear
 from skinnet.physics.inversion import SkinInverse
 from skinnet.physics.optics import SkinOptics
 from skinnet.physics.reflectance import SkinReflectance
-from skinnet.physics.sources import spectrum_matrix
+from skinnet.physics.sources import load_spectrum_to_srgb
 from skinnet.pipeline._progress import log
 
 WAYS = ("exposure", "common", "full", "none")
@@ -68,7 +68,7 @@ class ColourSettings:
 
     def check(self) -> None:
         """Raise `InputError` for names and files that cannot be used, before long work begins."""
-        spectrum_matrix(self.light, self.camera)
+        load_spectrum_to_srgb(self.light, self.camera)
         SkinOptics.preset(self.optics)
         self.balance()
         if self.calibration not in WAYS:
@@ -77,7 +77,7 @@ class ColourSettings:
     def calibrated(self, samples: Samples) -> "Colours":
         """The calibration of some scans together, each given by its linear RGB colours [n, 3]."""
         samples = [self.balance() * one for one in samples]
-        matrix = spectrum_matrix(self.light, self.camera).numpy()
+        matrix = load_spectrum_to_srgb(self.light, self.camera).numpy()
         ways: dict[str, Callable[[], Calibrated]] = {
             "exposure": lambda: self._exposures(matrix, samples),
             "common": lambda: self._common(matrix, samples),

@@ -49,7 +49,7 @@ def test_a_file_is_whole_and_says_what_it_is(exported: Path, name: str) -> None:
 
 
 def test_encoder_and_decoder_make_the_reconstruction_of_torch(exported: Path) -> None:
-    from skinnet.physics.decoder import srgb
+    from skinnet.physics import to_display
 
     model = load_weights(exported.with_suffix(".safetensors"))
     photograph = torch.randint(0, 256, (2, 37, 53, 3), dtype=torch.uint8)
@@ -60,7 +60,7 @@ def test_encoder_and_decoder_make_the_reconstruction_of_torch(exported: Path) ->
     del maps["mask"]
     (image,) = decoder.run(None, maps)
     with torch.no_grad():
-        expected = srgb(model(photograph.movedim(-1, 1) / 255).reconstruction).movedim(1, -1)
+        expected = to_display(model(photograph.movedim(-1, 1) / 255).reconstruction).movedim(1, -1)
     assert abs(image - expected.numpy()).max() < 1e-3
 
 

@@ -13,7 +13,7 @@ from skinnet.appearance.maps_file import load_maps
 from skinnet.appearance.skin_texture import SkinTexture
 from skinnet.appearance.stack_writer import write_stack
 from skinnet.errors import InputError
-from skinnet.physics.decoder import srgb
+from skinnet.physics import to_display
 from train.fitted import FittedFaces, FittedLots, shrunk
 
 
@@ -34,7 +34,7 @@ def test_the_truth_explains_the_picture(data: FittedFaces) -> None:
     linear = data.decoder.compose(*made.truth[:5], made.capture)
     skin = (made.mask > 0.5)[:, None].expand_as(linear)
     assert 0.1 < (made.mask > 0.5).float().mean() < 0.9
-    error = (srgb(linear) - made.photograph)[skin].abs()
+    error = (to_display(linear) - made.photograph)[skin].abs()
     assert error.median() < 0.03  # blur and grain
 
 

@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from torch import Tensor
 from torch.utils.data import DataLoader, Dataset
 
-from skinnet.physics.decoder import SkinDecoder
+from skinnet.physics import SkinDecoder
 from train.batch import Batch
 from train.stream import StreamLoader, seen_samples
 from train.synthetic.head_cache import SPLITS, geometry

@@ -9,8 +9,7 @@ from kornia.color import rgb_to_grayscale
 from torch import Tensor
 
 from skinnet.network.autoencoder import SHADING_MAX, SkinMaps
-from skinnet.physics.capture import Capture
-from skinnet.physics.decoder import SkinDecoder
+from skinnet.physics import Capture, SkinDecoder
 from skinnet.shape.procedural_head import CHART, unit
 from train.batch import Batch
 from train.synthetic.face_painting import Paint, enlarged, paint_skin

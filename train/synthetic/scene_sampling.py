@@ -3,7 +3,7 @@
 import numpy as np
 from numpy.typing import NDArray
 
-from skinnet.physics.camera import LIGHTS
+from skinnet.physics import LIGHTS
 
 Lot = dict[str, NDArray[np.float32]]
 

@@ -9,10 +9,7 @@ from kornia.enhance import jpeg_codec_differentiable
 from kornia.filters import gaussian_blur2d
 from torch import Tensor
 
-from skinnet.physics.camera import SpectralCamera, spectrum_to_srgb
-from skinnet.physics.capture import Capture
-from skinnet.physics.decoder import srgb
-from skinnet.physics.spectra import cameras
+from skinnet.physics import Capture, SpectralCamera, load_cameras, spectrum_to_srgb, to_display
 from train.synthetic.tensors import column
 
 HELD_OUT = 10
@@ -27,7 +24,7 @@ Image = Float[Tensor, "batch 3 height width"]
 @cache
 def numbers(split: str) -> tuple[int, ...]:
     """Places in the table of the cameras of a split: the test's are its own."""
-    order = np.random.default_rng(0).permutation(len(cameras()))
+    order = np.random.default_rng(0).permutation(len(load_cameras()))
     mine = order[:HELD_OUT] if split == "test" else order[HELD_OUT:]
     return tuple(sorted(int(place) for place in mine))
 
@@ -39,8 +36,8 @@ def pictured(
     which the camera is the nearest that the basis can say."""
     places = torch.tensor(numbers(split), device=lot["pick"].device)
     chosen = places[(lot["pick"] * len(places)).long().clamp_max(len(places) - 1)]
-    curves = torch.stack(list(cameras().values())).to(camera.mean)[chosen]
-    light = camera.light(lot["light"], lot["temperature"])
+    curves = torch.stack(list(load_cameras().values())).to(camera.mean)[chosen]
+    light = camera.mix_lights(lot["light"], lot["temperature"])
     red, blue = lot["white_balance"].unbind(-1)
     gain = torch.stack([red, torch.zeros_like(red), blue], -1).exp()
     matrix = spectrum_to_srgb(light, curves, camera.observer, gain)
@@ -69,7 +66,7 @@ def photographed(lot: dict[str, Tensor], linear: Image) -> Image:
 def toned(lot: dict[str, Tensor], linear: Image) -> Image:
     """Display sRGB of linear light by a camera's tone curve."""
     contrast, bend = (column(part) for part in lot["tone"].unbind(1))
-    display = srgb(PIVOT * (linear / PIVOT + 1e-6) ** contrast.exp())
+    display = to_display(PIVOT * (linear / PIVOT + 1e-6) ** contrast.exp())
     return (display + bend * display * (1 - display) * (2 * display - 1)).clamp(0, 1)
 
 

@@ -7,8 +7,7 @@ import pytest
 import torch
 
 from skinnet.appearance.colour import SkinColour, outside
-from skinnet.physics.camera import SpectralCamera
-from skinnet.physics.reflectance import SkinReflectance
+from skinnet.physics import SkinReflectance, SpectralCamera
 
 D = torch.float64
 

@@ -12,7 +12,7 @@ from skinnet import Decomposer, Decomposition
 from skinnet.images.photograph import srgb_to_linear
 from skinnet.inference.decomposer import shipped_model
 from skinnet.network.weights import SHIPPED, load_weights
-from skinnet.physics.decoder import srgb
+from skinnet.physics import to_display
 
 MODELS = SHIPPED.parent
 
@@ -46,7 +46,7 @@ def test_torch_and_onnxruntime_agree() -> None:
     for name in ("melanin", "hemoglobin", "shading", "mask", "offset"):
         assert np.abs(codes[name] - getattr(maps, name).numpy()).max() < 1e-3
     image = decoder.run({name: value for name, value in codes.items() if name != "mask"})["image"]
-    expected = srgb(reading.reconstruction).movedim(1, -1).numpy()
+    expected = to_display(reading.reconstruction).movedim(1, -1).numpy()
     assert np.abs(image - expected).max() < 2e-3
 
 

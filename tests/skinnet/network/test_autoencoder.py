@@ -17,8 +17,7 @@ from skinnet.network.autoencoder import (
     SkinAutoencoder,
     controls,
 )
-from skinnet.physics.camera import LIGHTS
-from skinnet.physics.decoder import SkinDecoder
+from skinnet.physics import LIGHTS, SkinDecoder
 
 
 @pytest.fixture(scope="module")

@@ -5,7 +5,7 @@ import torch
 
 from skinnet.network import losses
 from skinnet.network.autoencoder import F_MEL_MAX, SkinMaps
-from skinnet.physics.capture import Capture
+from skinnet.physics import Capture
 
 
 def maps(**changes: torch.Tensor) -> SkinMaps:

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from jaxtyping import Float
 
-from skinnet.physics.colour_surface import Surface
+from skinnet.physics._colour_surface import Surface
 
 
 def bowl(rows: int = 9, columns: int = 7) -> Float[np.ndarray, "rows columns 3"]:

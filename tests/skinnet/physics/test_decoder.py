@@ -12,7 +12,7 @@ from torch import nn
 from torch.func import functional_call
 
 from skinnet.physics.capture import Capture
-from skinnet.physics.decoder import SkinDecoder, srgb
+from skinnet.physics.decoder import SkinDecoder
 from skinnet.physics.optics import PRESETS, SkinOptics
 from tests import oracle
 
@@ -176,12 +176,6 @@ def test_state_dict_round_trip(tmp_path: Path, fast: bool) -> None:
     loaded = SkinDecoder(fast=fast, dtype=D)
     loaded.load_state_dict(torch.load(tmp_path / "decoder.pt", weights_only=True))
     assert torch.equal(loaded(*maps(4, 4)), saved(*maps(4, 4)))
-
-
-def test_display_is_clipped_srgb() -> None:
-    linear = torch.tensor([-1.0, 0.0, 0.002, 0.2, 1.0, 3.0], dtype=D).expand(3, 1, 6)
-    expected = torch.tensor([0, 0, 0.02584, 0.48453, 1, 1], dtype=D).expand(3, 1, 6)
-    assert torch.allclose(srgb(linear), expected, atol=1e-5)
 
 
 def test_both_modes_have_one_state_dict() -> None:

@@ -10,10 +10,10 @@ from skinnet.physics.inversion import F_BLOOD_RANGE, F_MEL_RANGE, SkinInverse
 from skinnet.physics.lookup import SkinLookup
 from skinnet.physics.optics import SkinOptics
 from skinnet.physics.reflectance import SkinReflectance
-from skinnet.physics.sources import spectrum_matrix
+from skinnet.physics.sources import load_spectrum_to_srgb
 
 D = torch.float64
-MATRIX = spectrum_matrix("D65", "mean")
+MATRIX = load_spectrum_to_srgb("D65", "mean")
 LOOKUP = SkinLookup(SkinReflectance(dtype=D))
 INVERSE = LOOKUP.inverse(MATRIX)
 
@@ -45,7 +45,7 @@ def test_fractions_come_back(dtype: torch.dtype) -> None:
 @pytest.mark.parametrize("name", ["A", "LED-B3", "D50"])
 def test_they_come_back_under_other_lights_and_a_calibration(name: str) -> None:
     transform = torch.tensor([[1.3, 0.1, 0.0], [0.05, 1.1, 0.1], [0.0, -0.1, 0.9]], dtype=D)
-    matrix = spectrum_matrix(name, "Nikon D200") @ transform.mT
+    matrix = load_spectrum_to_srgb(name, "Nikon D200") @ transform.mT
     f_mel, f_blood = fractions(5000, seed=1)
     found = LOOKUP.inverse(matrix)(colours(f_mel, f_blood, matrix))
     for ours, true in ((found.f_mel, f_mel), (found.f_blood, f_blood)):

@@ -7,16 +7,16 @@ from jaxtyping import Float, Int
 from scipy.spatial import cKDTree
 
 from skinnet.physics import nearest_colour as nearest
-from skinnet.physics.nearest_colour import NearestNode
+from skinnet.physics.nearest_colour import NearestColour
 from skinnet.physics.reflectance import SkinReflectance
-from skinnet.physics.sources import spectrum_matrix
+from skinnet.physics.sources import load_spectrum_to_srgb
 
 
 def skin(rows: int, columns: int) -> Float[np.ndarray, "rows columns 3"]:
     f_mel = 0.43 * torch.linspace(0, 1, rows).double()[:, None] ** 2
     f_blood = 0.15 * torch.linspace(0, 1, columns).double() ** 2
     reflectance = SkinReflectance(dtype=torch.float64)
-    return (reflectance(f_mel, f_blood) @ spectrum_matrix("D65", "Nikon D200")).numpy()
+    return (reflectance(f_mel, f_blood) @ load_spectrum_to_srgb("D65", "Nikon D200")).numpy()
 
 
 def brute_force(
@@ -54,18 +54,18 @@ def queries(kind: str, count: int = 2000) -> Float[np.ndarray, "n 3"]:
 def test_it_is_that_of_brute_force(kind: str, pairs: int, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(nearest, "PAIRS", pairs)
     for colours in (queries(kind), queries(kind).astype(np.float32)):
-        np.testing.assert_array_equal(NearestNode(SKIN)(colours), brute_force(SKIN, colours))
+        np.testing.assert_array_equal(NearestColour(SKIN)(colours), brute_force(SKIN, colours))
 
 
 def test_a_node_is_its_own_nearest() -> None:
-    np.testing.assert_array_equal(NearestNode(SKIN)(SKIN.reshape(-1, 3)), np.arange(40 * 30))
+    np.testing.assert_array_equal(NearestColour(SKIN)(SKIN.reshape(-1, 3)), np.arange(40 * 30))
 
 
 @pytest.mark.parametrize("axis", [0, 1])
 def test_midway_either_node_is_right(axis: int) -> None:
     one, other = np.moveaxis(SKIN, axis, 0)[:-1], np.moveaxis(SKIN, axis, 0)[1:]
     colours = ((one + other) / 2).reshape(-1, 3)
-    found = distance(SKIN, colours, NearestNode(SKIN)(colours))
+    found = distance(SKIN, colours, NearestColour(SKIN)(colours))
     np.testing.assert_allclose(
         found, distance(SKIN, colours, brute_force(SKIN, colours)), rtol=1e-12
     )
@@ -77,26 +77,26 @@ def test_it_holds_for_any_grid(shape: tuple[int, int], monkeypatch: pytest.Monke
     draw = np.random.default_rng(1)
     table = draw.normal(0, 1, (*shape, 3))
     colours = draw.normal(0, 1, (3000, 3))
-    np.testing.assert_array_equal(NearestNode(table)(colours), brute_force(table, colours))
+    np.testing.assert_array_equal(NearestColour(table)(colours), brute_force(table, colours))
 
 
 def test_nodes_may_coincide() -> None:
     table = np.repeat(SKIN, 3, 1)
     colours = queries("near")
-    found = distance(table, colours, NearestNode(table)(colours))
+    found = distance(table, colours, NearestColour(table)(colours))
     np.testing.assert_allclose(found, distance(SKIN, colours, brute_force(SKIN, colours)))
 
 
 @pytest.mark.parametrize("count", [0, 1, 2])
 def test_few_colours_are_enough(count: int) -> None:
     colours = queries("off", 10)[:count]
-    np.testing.assert_array_equal(NearestNode(SKIN)(colours), brute_force(SKIN, colours))
+    np.testing.assert_array_equal(NearestColour(SKIN)(colours), brute_force(SKIN, colours))
 
 
 def test_order_does_not_matter() -> None:
     colours = queries("off")
     order = np.random.default_rng(2).permutation(len(colours))
-    search = NearestNode(SKIN)
+    search = NearestColour(SKIN)
     np.testing.assert_array_equal(search(colours)[order], search(colours[order]))
 
 
@@ -108,4 +108,4 @@ def test_a_large_table_gives_the_answers_of_a_tree() -> None:
     for spread in (0.003, 0.03):
         colours = near + draw.normal(0, spread, near.shape)
         expected = cKDTree(table.reshape(-1, 3)).query(colours)[1]
-        np.testing.assert_array_equal(NearestNode(table)(colours), expected)
+        np.testing.assert_array_equal(NearestColour(table)(colours), expected)

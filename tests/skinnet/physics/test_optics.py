@@ -8,9 +8,9 @@ import torch
 from torch import nn
 from torch.func import functional_call
 
+from skinnet.physics._tables import read_table
 from skinnet.physics.optics import PRESETS, SkinOptics
 from skinnet.physics.reflectance import SkinReflectance
-from skinnet.physics.spectra import table
 
 CHANGED: dict[str, Any] = {
     "c_eum": 60.0,
@@ -28,10 +28,10 @@ CHANGED: dict[str, Any] = {
     "base_scale": 50.0,
     "mie": 1e5,
     "rayleigh": 1e12,
-    "eps_eum": 2 * table("melanin")["eumelanin"],
-    "eps_phm": 2 * table("melanin")["pheomelanin"],
-    "e_oxy": 0.5 * table("hemoglobin")["oxy"],
-    "e_deoxy": 0.5 * table("hemoglobin")["deoxy"],
+    "eps_eum": 2 * read_table("melanin")["eumelanin"],
+    "eps_phm": 2 * read_table("melanin")["pheomelanin"],
+    "e_oxy": 0.5 * read_table("hemoglobin")["oxy"],
+    "e_deoxy": 0.5 * read_table("hemoglobin")["deoxy"],
 }
 MEDIANS = {"calibrated": 0.0170, "paper": 0.036, "authors": 0.16, "printed": 0.44}
 
@@ -106,7 +106,7 @@ def test_presets_are_frozen() -> None:
 def test_a_module_does_not_write_into_the_tables() -> None:
     model = SkinReflectance(dtype=torch.float64)
     model.eps_eum.zero_()
-    assert table("melanin")["eumelanin"].min() > 0
+    assert read_table("melanin")["eumelanin"].min() > 0
 
 
 def test_printed_skin_is_black() -> None:

@@ -9,36 +9,36 @@ import torch
 
 from skinnet.errors import InputError
 from skinnet.physics.camera import SpectralCamera
-from skinnet.physics.sources import camera, light, spectrum_matrix
-from skinnet.physics.spectra import WAVELENGTHS, cameras
+from skinnet.physics.sources import load_camera, load_light, load_spectrum_to_srgb
+from skinnet.physics.spectra import WAVELENGTHS, load_cameras
 
 
 @pytest.mark.parametrize("name", ["D65", "D50", "d55"])
 def test_daylight_is_cies(name: str) -> None:
     exact = colour.SDS_ILLUMINANTS[name.upper()].copy().align(colour.SpectralShape(400, 720, 10))
     values = exact.values / exact.values.sum()
-    np.testing.assert_allclose(light(name).numpy(), values, rtol=2e-3)
+    np.testing.assert_allclose(load_light(name).numpy(), values, rtol=2e-3)
 
 
 def test_a_light_has_unit_sum_whatever_its_name() -> None:
     for name in ("A", "LED-B3", "led-b3", "D5500K", "D10000"):
-        assert light(name).shape == (33,)
-        assert light(name).sum().item() == pytest.approx(1)
+        assert load_light(name).shape == (33,)
+        assert load_light(name).sum().item() == pytest.approx(1)
 
 
 def test_the_papers_camera_is_there_whatever_the_case() -> None:
-    assert torch.equal(camera("nikon d200"), cameras()["Nikon D200"])
+    assert torch.equal(load_camera("nikon d200"), load_cameras()["Nikon D200"])
 
 
 def test_the_standard_matrix_is_the_spectral_cameras() -> None:
     ours = SpectralCamera(dtype=torch.float64)
     exact = ours.matrix(ours.standard())
-    torch.testing.assert_close(spectrum_matrix("D6504K", "mean"), exact, rtol=1e-6, atol=1e-9)
+    torch.testing.assert_close(load_spectrum_to_srgb("D6504K", "mean"), exact, rtol=1e-6, atol=1e-9)
 
 
 def test_white_stays_white() -> None:
     for light_name in ("A", "LED-B1", "D40"):
-        white = spectrum_matrix(light_name, "Nikon D200").sum(0)
+        white = load_spectrum_to_srgb(light_name, "Nikon D200").sum(0)
         torch.testing.assert_close(white, torch.ones(3, dtype=torch.float64))
 
 
@@ -46,10 +46,10 @@ def test_spectra_from_files_are_interpolated(tmp_path: Path) -> None:
     rows = [f"{w},{w / 1000}" for w in range(380, 741, 20)]
     (tmp_path / "led.csv").write_text("# made up\nnm,power\n" + "\n".join(rows))
     exact = WAVELENGTHS / WAVELENGTHS.sum()
-    torch.testing.assert_close(light(str(tmp_path / "led.csv")), exact)
+    torch.testing.assert_close(load_light(str(tmp_path / "led.csv")), exact)
     three = [f"{w},{w},{2 * w},1" for w in range(720, 399, -40)]
     (tmp_path / "cam.csv").write_text("\n".join(three))
-    found = camera(str(tmp_path / "cam.csv"))
+    found = load_camera(str(tmp_path / "cam.csv"))
     torch.testing.assert_close(found[:, 0], found[:, 1])
     torch.testing.assert_close(found[:, 2], torch.full((33,), 1 / 33, dtype=torch.float64))
 
@@ -71,15 +71,15 @@ def test_a_bad_spectrum_is_named(tmp_path: Path, text: str, words: str) -> None:
     path = tmp_path / "bad.csv"
     path.write_text(text)
     with pytest.raises(InputError, match=f"bad.csv.*{words}"):
-        light(str(path))
+        load_light(str(path))
 
 
 def test_an_unknown_name_lists_its_neighbours(tmp_path: Path) -> None:
     with pytest.raises(InputError, match=r"no camera 'Nikon D201'.*Nikon D200"):
-        camera("Nikon D201")
+        load_camera("Nikon D201")
     with pytest.raises(InputError, match=r"no light 'LED-B9'.*LED-B"):
-        light("LED-B9")
+        load_light("LED-B9")
     with pytest.raises(InputError, match="Daylight has 4000 to 25000 K"):
-        light("D30")
+        load_light("D30")
     with pytest.raises(InputError, match=r"absent.csv cannot be read"):
-        light(str(tmp_path / "absent.csv"))
+        load_light(str(tmp_path / "absent.csv"))

@@ -1,4 +1,4 @@
-"""sRGB: luminance is colour-science's, in any shape and precision."""
+"""sRGB: luminance is colour-science's, display values are clipped."""
 
 import warnings
 
@@ -11,7 +11,7 @@ with warnings.catch_warnings():
     warnings.simplefilter("ignore")
     import colour
 
-from skinnet.physics import luminance
+from skinnet.physics.srgb import luminance, to_display
 
 
 def colour_luminance(linear: np.ndarray) -> np.ndarray:
@@ -36,3 +36,9 @@ def test_luminance_has_the_printed_weights() -> None:
     found = luminance(torch.eye(3, dtype=torch.float64)[..., None, None]).flatten()
     assert found.numpy() == pytest.approx([0.2126, 0.7152, 0.0722], abs=5e-5)
     assert luminance(torch.ones(3, 1, 1)).item() == pytest.approx(1, abs=1e-6)
+
+
+def test_display_is_clipped_srgb() -> None:
+    linear = torch.tensor([-1.0, 0.0, 0.002, 0.2, 1.0, 3.0], dtype=torch.float64).expand(3, 1, 6)
+    expected = torch.tensor([0, 0, 0.02584, 0.48453, 1, 1], dtype=torch.float64).expand(3, 1, 6)
+    assert torch.allclose(to_display(linear), expected, atol=1e-5)

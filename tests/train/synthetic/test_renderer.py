@@ -11,9 +11,7 @@ from torch.utils.data import default_collate
 
 from skinnet.network import losses
 from skinnet.network.autoencoder import F_BLOOD_MAX, F_MEL_MAX
-from skinnet.physics.camera import SpectralCamera
-from skinnet.physics.decoder import SkinDecoder, srgb
-from skinnet.physics.spectra import cameras
+from skinnet.physics import SkinDecoder, SpectralCamera, load_cameras, to_display
 from train.batch import Batch
 from train.synthetic import simulated_camera as camera
 from train.synthetic.face_painting import paint_skin
@@ -52,8 +50,8 @@ def made(data: SyntheticFaces, lot: Lot) -> Made:
 @pytest.fixture
 def exact(monkeypatch: pytest.MonkeyPatch) -> None:
     """Lets every camera be the basis's mean, which a capture can say exactly."""
-    means = dict.fromkeys(cameras(), SpectralCamera().mean)
-    monkeypatch.setattr(camera, "cameras", lambda: means)
+    means = dict.fromkeys(load_cameras(), SpectralCamera().mean)
+    monkeypatch.setattr(camera, "load_cameras", lambda: means)
 
 
 def changed(lot: Lot, changes: dict[str, float]) -> Lot:
@@ -64,7 +62,7 @@ def changed(lot: Lot, changes: dict[str, float]) -> Lot:
 def test_a_picture_is_what_the_decoder_makes_of_its_truth(made: Made) -> None:
     plain = made(**PLAIN)
     assert plain.truth is not None and plain.capture is not None
-    again = srgb(SkinDecoder(fast=False).compose(*plain.truth[:5], plain.capture))
+    again = to_display(SkinDecoder(fast=False).compose(*plain.truth[:5], plain.capture))
     close = (again - plain.photograph).abs().amax(1)
     # The lens blurs a little however sharp it is, and clipped light has no truth.
     assert close.median() < 0.004 and close.quantile(0.9) < 0.03

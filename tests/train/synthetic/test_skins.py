@@ -13,7 +13,7 @@ from skinnet.appearance.hybrid import HybridModel
 from skinnet.appearance.skin_texture import SkinTexture
 from skinnet.appearance.stack_writer import write_stack
 from skinnet.errors import InputError
-from skinnet.physics.sources import spectrum_matrix
+from skinnet.physics import load_spectrum_to_srgb
 from skinnet.shape.procedural_head import chart
 from train.synthetic.face_painting import paint_skin
 from train.synthetic.faces import Lots, SyntheticFaces
@@ -43,7 +43,7 @@ def person(number: int) -> SkinTexture:
 def model(tmp_path_factory: pytest.TempPathFactory) -> HybridModel:
     folder = tmp_path_factory.mktemp("people")
     people = {str(i): lambda i=i: person(i) for i in range(5)}
-    colour = SkinColour(spectrum_matrix("D65", "mean").numpy())
+    colour = SkinColour(load_spectrum_to_srgb("D65", "mean").numpy())
     return HybridModel.fit(write_stack(folder, people, colour, "people"))
 
 

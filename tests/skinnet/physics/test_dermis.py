@@ -6,7 +6,7 @@ import torch
 from hypothesis import given
 from hypothesis import strategies as st
 
-from skinnet.physics.kubelka_munk import kubelka_munk, kubelka_munk_printed, x_coth_x
+from skinnet.physics.dermis import kubelka_munk, kubelka_munk_printed, x_coth_x
 from skinnet.physics.reflectance import packing
 from tests import oracle
 

@@ -7,11 +7,11 @@ import torch
 from hypothesis import given
 from hypothesis import strategies as st
 
-from skinnet.physics.daylight import daylight
-from skinnet.physics.spectra import table
+from skinnet.physics._tables import read_table
+from skinnet.physics.illuminants import daylight
 from tests import oracle
 
-COMPONENTS = torch.stack(list(table("daylight").values()))
+COMPONENTS = torch.stack(list(read_table("daylight").values()))
 
 
 def spectrum(temperature: float) -> np.ndarray:
