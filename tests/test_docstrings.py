@@ -1,0 +1,89 @@
+"""Public names are documented for a reader, and what their examples print is true."""
+
+import doctest
+import importlib
+import inspect
+import warnings
+from collections.abc import Iterator
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from tools.house import ROOT, definitions, read
+
+ROOMS = sorted(file.parent.name for file in (ROOT / "skinnet").glob("*/__init__.py"))
+
+
+def public(room: str) -> list[str]:
+    return sorted(importlib.import_module(f"skinnet.{room}").__all__)
+
+
+NAMES = [(room, name) for room in ROOMS for name in public(room)]
+
+
+def test_every_public_definition_is_handed_out_by_its_room() -> None:
+    for room in ROOMS:
+        found = {
+            one.name
+            for module in read(ROOT / "skinnet")
+            if module.room == room and module.public
+            for one in definitions(module.tree)
+        }
+        assert found <= set(public(room)), (room, found - set(public(room)))
+
+
+@pytest.mark.parametrize(("room", "name"), NAMES)
+def test_arguments_and_results_are_described(room: str, name: str) -> None:
+    found = getattr(importlib.import_module(f"skinnet.{room}"), name)
+    for path, one in documented(name, found):
+        text = inspect.getdoc(one) or ""
+        assert text, f"{path} has no docstring"
+        assert text.partition("\n")[0].rstrip().endswith((".", ":")), f"{path}: {text[:80]}"
+        for argument in arguments(one):
+            assert f"{argument}:" in text or f"{argument} (" in text, f"{path}: {argument}"
+        if returns(one):
+            assert "Returns:" in text or "Yields:" in text, f"{path} does not say what it returns"
+
+
+@pytest.mark.parametrize("room", ROOMS)
+def test_examples_print_what_they_say(room: str, tmp_path: Path, monkeypatch: Any) -> None:
+    monkeypatch.chdir(tmp_path)
+    examples, runner = 0, doctest.DocTestRunner(optionflags=doctest.NORMALIZE_WHITESPACE)
+    for name in public(room):
+        found = getattr(importlib.import_module(f"skinnet.{room}"), name)
+        for test in doctest.DocTestFinder().find(found, name, globs={}):
+            examples += len(test.examples)
+            with warnings.catch_warnings():
+                runner.run(test)
+    assert runner.failures == 0 and examples > 0
+
+
+def documented(name: str, found: Any) -> Iterator[tuple[str, Any]]:
+    """A function, or a class and its public methods."""
+    if not (inspect.isfunction(found) or inspect.isclass(found)):
+        return
+    yield name, found
+    if inspect.isclass(found):
+        for method, value in vars(found).items():
+            value = getattr(value, "__func__", value)
+            if inspect.isfunction(value) and not method.startswith("_"):
+                yield f"{name}.{method}", value
+
+
+def arguments(one: Any) -> list[str]:
+    """Names of what a caller hands in."""
+    if inspect.isclass(one) and issubclass(one, Exception):
+        return []
+    try:
+        given = inspect.signature(one).parameters.values()
+    except ValueError:
+        return []
+    return [p.name for p in given if p.name not in ("self", "cls") and not p.name.startswith("_")]
+
+
+def returns(one: Any) -> bool:
+    """Whether a function gives something back."""
+    if inspect.isclass(one):
+        return False
+    return inspect.signature(one).return_annotation not in (None, "None", inspect.Signature.empty)
