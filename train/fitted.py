@@ -21,8 +21,8 @@ from skinnet.mesh.mesh_file import read_mesh
 from skinnet.network.autoencoder import F_BLOOD_MAX, F_MEL_MAX
 from skinnet.physics import SkinDecoder
 from skinnet.render.scene import Scene
-from skinnet.render.views import front
-from skinnet.render.visibility import geometry
+from skinnet.render.views import frame_face
+from skinnet.render.visibility import trace_geometry
 from train.batch import Batch
 from train.stream import StreamLoader, seen_samples
 from train.synthetic.faces import Drawn
@@ -190,8 +190,8 @@ def shots(mesh: Path, count: int, size: int, draw: np.random.Generator) -> list[
 
 
 def _shot(scene: Scene, size: int, turn: float, tilt: float) -> View:
-    camera = front(scene.mesh.vertices, (size, size), float(turn), float(tilt), FIELD)
-    found = geometry(scene, camera)
+    camera = frame_face(scene.mesh.vertices, (size, size), float(turn), float(tilt), FIELD)
+    found = trace_geometry(scene, camera)
     assert found.uv is not None  # NAME_face.obj has texture coordinates
     view = View(
         np.zeros((size, size), np.float32),

@@ -15,27 +15,27 @@ from skinnet.errors import InputError
 from skinnet.files import BROKEN
 from skinnet.mesh._texture_file import Texture, decode_texture
 
-SUFFIXES = (".obj", ".ply", ".glb", ".gltf", ".stl")
+MESH_SUFFIXES = (".obj", ".ply", ".glb", ".gltf", ".stl")
 """Suffixes of the mesh files that are read."""
 
 
-class Corners(NamedTuple):
+class MeshGeometry(NamedTuple):
     """A vertex for each pair of position and texture coordinates, and triangles."""
 
     vertices: Float[np.ndarray, "_ 3"]
     triangles: Int[np.ndarray, "_ 3"]
 
 
-class Part(NamedTuple):
+class MeshPart(NamedTuple):
     """One geometry of a file; `colour` is its material's, sRGB."""
 
-    corners: Corners
+    corners: MeshGeometry
     uv: Float[np.ndarray, "_ 2"] | None
     picture: Texture | None
     colour: UInt8[np.ndarray, "3"]
 
 
-def read_parts(path: Path) -> list[Part]:
+def read_parts(path: Path) -> list[MeshPart]:
     """The geometries with triangles of a file, in its frame.
 
     Raises `InputError` for a file that is missing, of another kind, damaged, or without triangles.
@@ -54,14 +54,14 @@ def read_parts(path: Path) -> list[Part]:
     return [_part(path, each) for each in solid]
 
 
-def stack(parts: list[Corners]) -> Corners:
+def concatenate(parts: list[MeshGeometry]) -> MeshGeometry:
     """Parts one after the other."""
     starts = np.cumsum([0] + [len(part.vertices) for part in parts[:-1]])
     triangles = [part.triangles + start for part, start in zip(parts, starts, strict=True)]
-    return Corners(np.concatenate([p.vertices for p in parts]), np.concatenate(triangles))
+    return MeshGeometry(np.concatenate([p.vertices for p in parts]), np.concatenate(triangles))
 
 
-def obj_positions(path: Path) -> Float[np.ndarray, "vertices 3"]:
+def read_obj_positions(path: Path) -> Float[np.ndarray, "vertices 3"]:
     """The `v` lines of an OBJ file in its order; trimesh's is by material and seam."""
     with path.open("rb") as file:
         lines = [line for line in file if line.startswith((b"v ", b"v\t"))]
@@ -78,7 +78,7 @@ def _scene(path: Path) -> Any:
     kind = path.suffix.lower()
     if not path.is_file():
         raise InputError(f"There is no mesh {path}; check the path.")
-    if kind not in SUFFIXES:
+    if kind not in MESH_SUFFIXES:
         raise InputError(f"{path} is no mesh that is read; give one of {', '.join(SUFFIXES)}.")
     try:
         with warnings.catch_warnings():
@@ -96,8 +96,8 @@ def _placed(scene: Any, node: str) -> Any:
     return geometry.copy().apply_transform(transform)
 
 
-def _part(path: Path, geometry: Any) -> Part:
-    corners = Corners(
+def _part(path: Path, geometry: Any) -> MeshPart:
+    corners = MeshGeometry(
         np.asarray(geometry.vertices, np.float64), np.asarray(geometry.faces, np.int64)
     )
     low, high = corners.triangles.min(), corners.triangles.max()
@@ -108,10 +108,10 @@ def _part(path: Path, geometry: Any) -> Part:
         )
     visual = geometry.visual
     if not isinstance(visual, TextureVisuals):
-        return Part(corners, None, None, _rgb(visual.main_color))
+        return MeshPart(corners, None, None, _rgb(visual.main_color))
     known = visual.uv is not None and len(visual.uv) == len(corners.vertices)
     uv = np.asarray(visual.uv, np.float64)[:, :2] if known else None
-    return Part(corners, uv, _picture(path, visual.material), _rgb(visual.material.main_color))
+    return MeshPart(corners, uv, _picture(path, visual.material), _rgb(visual.material.main_color))
 
 
 def _picture(path: Path, material: Any) -> Texture | None:

@@ -16,7 +16,7 @@ Lengths = Float[np.ndarray, "triangles"]
 Choice = Bool[np.ndarray, "triangles"]
 
 
-class Neighbours(NamedTuple):
+class AdjacentFaces(NamedTuple):
     """Pairs of triangles with a common edge, and whether both run through it the same way."""
 
     first: Int[np.ndarray, "pairs"]
@@ -24,19 +24,19 @@ class Neighbours(NamedTuple):
     same: Bool[np.ndarray, "pairs"]
 
 
-def neighbours(triangles: Triangles) -> Neighbours:
+def pair_adjacent_faces(triangles: Triangles) -> AdjacentFaces:
     """Pairs of triangles with a common edge, of at most two at each."""
     edges = half_edges(triangles)
     keys = edge_keys(edges, int(triangles.max()) + 1)
     order = np.argsort(keys, kind="stable")
     pair = np.flatnonzero(keys[order][1:] == keys[order][:-1])
     one, two = order[pair], order[pair + 1]
-    return Neighbours(one // 3, two // 3, edges[one, 0] == edges[two, 0])
+    return AdjacentFaces(one // 3, two // 3, edges[one, 0] == edges[two, 0])
 
 
-def face_components(triangles: Triangles) -> Labels:
+def label_face_components(triangles: Triangles) -> Labels:
     """A number for each triangle, the same for those that edges connect."""
-    first, second, _ = neighbours(triangles)
+    first, second, _ = pair_adjacent_faces(triangles)
     ties = coo_array((np.ones(len(first), bool), (first, second)), (len(triangles),) * 2)
     label: Labels = connected_components(ties, directed=False)[1]
     return label
@@ -54,12 +54,12 @@ def areas(vertices: Vertices, triangles: Triangles) -> Lengths:
     return lengths
 
 
-def turned(triangles: Triangles, turn: Choice) -> Triangles:
+def flip_triangles(triangles: Triangles, turn: Choice) -> Triangles:
     """Triangles, those of `turn` seen from the other side."""
     return np.where(turn[:, None], triangles[:, [0, 2, 1]], triangles)
 
 
-def disagreeing(vertices: Vertices, triangles: Triangles) -> Choice:
+def find_inconsistent_faces(vertices: Vertices, triangles: Triangles) -> Choice:
     """Triangles to turn so that neighbours run through their edge in opposite directions.
 
     Every triangle stands twice in a graph, as it is and turned, and each is tied to the neighbours
@@ -67,7 +67,7 @@ def disagreeing(vertices: Vertices, triangles: Triangles) -> Choice:
     the larger area of triangles as they are stays; of one that cannot, nothing is turned.
     """
     count = len(triangles)
-    first, second, same = neighbours(triangles)
+    first, second, same = pair_adjacent_faces(triangles)
     ends = np.where(same, second + count, second), np.where(same, second, second + count)
     rows, columns = np.concatenate([first, first + count]), np.concatenate(ends)
     ties = coo_array((np.ones(len(rows), bool), (rows, columns)), (2 * count, 2 * count))
@@ -79,7 +79,7 @@ def disagreeing(vertices: Vertices, triangles: Triangles) -> Choice:
     return turn
 
 
-def inside_out(vertices: Vertices, triangles: Triangles) -> bool:
+def is_inside_out(vertices: Vertices, triangles: Triangles) -> bool:
     """Whether normals point to the middle on the whole: of a closed surface, a dome, or a mask."""
     vectors = area_vectors(vertices, triangles)
     centres = vertices[triangles].mean(1)

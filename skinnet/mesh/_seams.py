@@ -3,7 +3,7 @@
 import numpy as np
 from jaxtyping import Float, Int
 
-from skinnet.mesh._mesh_parts import Corners
+from skinnet.mesh._mesh_parts import MeshGeometry
 from skinnet.mesh._topology import weld
 
 Points = Float[np.ndarray, "points 2"]
@@ -11,17 +11,17 @@ Numbers = Int[np.ndarray, "vertices"]
 Triangles = Int[np.ndarray, "triangles 3"]
 
 
-def join_corners(corners: Corners, listed: Float[np.ndarray, "listed 3"]) -> Corners:
+def merge_vertices(corners: MeshGeometry, listed: Float[np.ndarray, "listed 3"]) -> MeshGeometry:
     """One vertex for each position that a triangle has, in the order of `listed`, then as before.
 
     `listed` may be empty.
     """
     every = np.concatenate([listed, corners.vertices])
     used, place = np.unique(weld(every)[corners.triangles + len(listed)], return_inverse=True)
-    return Corners(every[used], place.reshape(-1, 3))
+    return MeshGeometry(every[used], place.reshape(-1, 3))
 
 
-def positions_in(
+def match_positions(
     listed: Float[np.ndarray, "listed 3"], vertices: Float[np.ndarray, "vertices 3"]
 ) -> Numbers:
     """For each vertex the first of `listed` at its position, if there is one."""
@@ -29,7 +29,7 @@ def positions_in(
     return index
 
 
-def share_coordinates(
+def merge_coordinates(
     triangles: Triangles, uv: Points, uv_triangles: Triangles
 ) -> tuple[Float[np.ndarray, "shared 2"], Triangles]:
     """Texture coordinates one for each vertex, and more only where its triangles differ."""

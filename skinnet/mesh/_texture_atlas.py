@@ -23,7 +23,7 @@ class Page(NamedTuple):
     colour: UInt8[np.ndarray, "3"]
 
 
-class Sheet(NamedTuple):
+class AtlasTile(NamedTuple):
     """Triangles into texture coordinates in a picture."""
 
     triangles: Triangles
@@ -39,7 +39,7 @@ class Atlas(NamedTuple):
     picture: Picture | None
 
 
-def join(pages: list[Page]) -> Atlas | None:
+def pack_atlas(pages: list[Page]) -> Atlas | None:
     """The parts in one texture space; None if some have no coordinates and none has a picture.
 
     Parts that all have the same picture, or none, keep their coordinates. Otherwise the pictures
@@ -55,7 +55,7 @@ def join(pages: list[Page]) -> Atlas | None:
     return _side_by_side([_sheet(page) for page in pages])
 
 
-def wrap(uv: Points, triangles: Triangles) -> tuple[Points, Triangles]:
+def wrap_coordinates(uv: Points, triangles: Triangles) -> tuple[Points, Triangles]:
     """Triangles in other tiles of the plane moved onto [0, 1]^2; what still juts out is cut off."""
     corners = uv[triangles]
     inside = ((corners >= 0) & (corners <= 1)).all((1, 2))[:, None, None]
@@ -67,16 +67,16 @@ def wrap(uv: Points, triangles: Triangles) -> tuple[Points, Triangles]:
     return np.clip(wrapped, 0, 1), place.reshape(-1, 3)
 
 
-def _sheet(page: Page) -> Sheet:
+def _sheet(page: Page) -> AtlasTile:
     """A part with its picture, or with a patch of its colour."""
     if page.uv is not None and page.picture is not None:
-        uv, triangles = wrap(page.uv, page.triangles)
-        return Sheet(triangles, uv, page.picture)
+        uv, triangles = wrap_coordinates(page.uv, page.triangles)
+        return AtlasTile(triangles, uv, page.picture)
     patch = np.tile(page.colour, (PATCH, PATCH, 1))
-    return Sheet(np.zeros_like(page.triangles), np.full((1, 2), 0.5), patch)
+    return AtlasTile(np.zeros_like(page.triangles), np.full((1, 2), 0.5), patch)
 
 
-def _side_by_side(sheets: list[Sheet]) -> Atlas:
+def _side_by_side(sheets: list[AtlasTile]) -> Atlas:
     distinct: list[Picture] = []
     for sheet in sheets:
         if not any(np.array_equal(sheet.picture, other) for other in distinct):

@@ -58,7 +58,7 @@ def boundary_loops(triangles: Triangles) -> list[Int[np.ndarray, "loop"]]:
     return loops
 
 
-def components(triangles: Triangles, vertex_count: int) -> Int[np.ndarray, "vertices"]:
+def label_components(triangles: Triangles, vertex_count: int) -> Int[np.ndarray, "vertices"]:
     """A number for each vertex, the same for those that triangles connect."""
     start, end = half_edges(triangles).T
     links = coo_array((np.ones(len(start), bool), (start, end)), (vertex_count, vertex_count))

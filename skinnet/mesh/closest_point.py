@@ -13,7 +13,7 @@ CHUNK = 100_000
 """Queries that go through the tree together; it bounds the memory."""
 
 
-class Closest(NamedTuple):
+class ClosestPoints(NamedTuple):
     """Where the surface is closest: `triangle` -1 and `distance` inf if beyond the limit."""
 
     distance: Float[np.ndarray, "queries"]
@@ -21,7 +21,7 @@ class Closest(NamedTuple):
     barycentric: Float[np.ndarray, "queries 3"]
 
 
-class ClosestPoints:
+class TriangleTree:
     """A tree of boxes over triangles of any size.
 
     Every level halves the triangles of a box along its longest side. All queries go down
@@ -43,14 +43,14 @@ class ClosestPoints:
         self.sides = corners[:, 1:] - corners[:, :1]
         self.gram = np.einsum("tix,tjx->tij", self.sides, self.sides)
 
-    def query(self, points: Float[np.ndarray, "queries 3"], limit: float = np.inf) -> Closest:
+    def query(self, points: Float[np.ndarray, "queries 3"], limit: float = np.inf) -> ClosestPoints:
         """The closest point to each of `points` within `limit`."""
         parts = [
             self._query(points[i : i + CHUNK], limit) for i in range(0, max(len(points), 1), CHUNK)
         ]
-        return Closest(*(np.concatenate(part) for part in zip(*parts, strict=True)))
+        return ClosestPoints(*(np.concatenate(part) for part in zip(*parts, strict=True)))
 
-    def _query(self, points: Float[np.ndarray, "queries 3"], limit: float) -> Closest:
+    def _query(self, points: Float[np.ndarray, "queries 3"], limit: float) -> ClosestPoints:
         bound = np.minimum(self.nearest_vertex.query(points)[0], limit)
         # Rounding must not put the box of the nearest vertex out of reach.
         reach = (bound * (1 + 1e-9)) ** 2 + 1e-300
@@ -71,7 +71,7 @@ class ClosestPoints:
         query: Int[np.ndarray, "pairs"],
         triangle: Int[np.ndarray, "pairs"],
         limit: float,
-    ) -> Closest:
+    ) -> ClosestPoints:
         """The nearest of the pairs of each query, which come in the order of the queries."""
         away = points[query] - self.start[triangle]
         along = np.einsum("pix,px->pi", self.sides[triangle], away)
@@ -96,7 +96,7 @@ class ClosestPoints:
         second: Float[np.ndarray, "found"],
         third: Float[np.ndarray, "found"],
         limit: float,
-    ) -> Closest:
+    ) -> ClosestPoints:
         side_b, side_c = self.sides[triangle, 0], self.sides[triangle, 1]
         place = self.start[triangle] + second[:, None] * side_b + third[:, None] * side_c
         away = np.linalg.norm(points[found] - place, axis=1)
@@ -109,7 +109,7 @@ class ClosestPoints:
         number[found] = self.order[triangle[within]]
         second, third = second[within], third[within]
         barycentric[found] = np.stack([(1 - second - third).clip(0), second, third], 1)
-        return Closest(distance, number, barycentric)
+        return ClosestPoints(distance, number, barycentric)
 
 
 def _order(middles: Float[np.ndarray, "triangles 3"]) -> tuple[Int[np.ndarray, "slots"], int]:

@@ -7,9 +7,9 @@ from PIL import Image
 
 from skinnet.errors import InputError
 from skinnet.files import written_together
-from skinnet.mesh._mesh_parts import Part, obj_positions, read_parts, stack
-from skinnet.mesh._seams import join_corners, share_coordinates
-from skinnet.mesh._texture_atlas import Page, join
+from skinnet.mesh._mesh_parts import MeshPart, concatenate, read_obj_positions, read_parts
+from skinnet.mesh._seams import merge_coordinates, merge_vertices
+from skinnet.mesh._texture_atlas import Page, pack_atlas
 from skinnet.mesh._texture_file import Texture, picture_beside, read_texture
 from skinnet.mesh.mesh import Mesh
 
@@ -28,12 +28,12 @@ def read_mesh(path: Path, texture: Path | None = None) -> Mesh:
     """
     path = Path(path)
     parts = read_parts(path)
-    listed = obj_positions(path) if path.suffix.lower() == ".obj" else np.zeros((0, 3))
-    vertices, triangles = join_corners(stack([part.corners for part in parts]), listed)
-    atlas = join(_pages(parts, texture, picture_beside(path)))
+    listed = read_obj_positions(path) if path.suffix.lower() == ".obj" else np.zeros((0, 3))
+    vertices, triangles = merge_vertices(concatenate([part.corners for part in parts]), listed)
+    atlas = pack_atlas(_pages(parts, texture, picture_beside(path)))
     if atlas is None:
         return Mesh(vertices, triangles, name=str(path))
-    uv, uv_triangles = share_coordinates(triangles, atlas.uv, atlas.triangles)
+    uv, uv_triangles = merge_coordinates(triangles, atlas.uv, atlas.triangles)
     return Mesh(vertices, triangles, uv, uv_triangles, atlas.picture, str(path))
 
 
@@ -57,7 +57,7 @@ def write_mesh(path: Path, mesh: Mesh) -> None:
                 beside(path.with_suffix(".mtl")).write_text(material, encoding="utf-8")
 
 
-def _pages(parts: list[Part], given: Path | None, beside: Path | None) -> list[Page]:
+def _pages(parts: list[MeshPart], given: Path | None, beside: Path | None) -> list[Page]:
     pictures: list[Texture | None] = [part.picture for part in parts]
     missing = all(picture is None for picture in pictures)
     if given is not None:

@@ -41,7 +41,7 @@ def rasterise(corners: Float[np.ndarray, "triangles 3 2"], size: int) -> Raster:
     """
     # In texels, x along columns and y along rows, so that centres lie at whole numbers.
     places = (corners * [1, -1] + [0, 1]) * size - 0.5
-    change = slopes(places)
+    change = barycentric_gradients(places)
     spans = _spans(places, change, size)
     span = np.repeat(np.arange(len(spans.row)), spans.width)
     starts = np.cumsum(spans.width) - spans.width
@@ -57,7 +57,9 @@ def rasterise(corners: Float[np.ndarray, "triangles 3 2"], size: int) -> Raster:
     return Raster(triangle.reshape(size, size), barycentric.reshape(size, size, 3))
 
 
-def slopes(places: Float[np.ndarray, "triangles 3 2"]) -> Float[np.ndarray, "triangles 3 2"]:
+def barycentric_gradients(
+    places: Float[np.ndarray, "triangles 3 2"],
+) -> Float[np.ndarray, "triangles 3 2"]:
     """Change of barycentric coordinate k for a step along x and y; nan for an empty triangle."""
     ahead, behind = np.roll(places, -1, 1), np.roll(places, -2, 1)
     across = behind - ahead

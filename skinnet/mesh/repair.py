@@ -7,8 +7,14 @@ import numpy as np
 from jaxtyping import Bool, Float, Int
 
 from skinnet.errors import InputError
-from skinnet.mesh._orientation import areas, disagreeing, face_components, inside_out, turned
-from skinnet.mesh._texture_atlas import wrap
+from skinnet.mesh._orientation import (
+    areas,
+    find_inconsistent_faces,
+    flip_triangles,
+    is_inside_out,
+    label_face_components,
+)
+from skinnet.mesh._texture_atlas import wrap_coordinates
 from skinnet.mesh._topology import edge_keys, half_edges
 from skinnet.mesh.mesh import Mesh
 
@@ -31,21 +37,21 @@ FACE = (100.0, 600.0)
 Choice = Bool[np.ndarray, "triangles"]
 
 
-class Checked(NamedTuple):
+class RepairedMesh(NamedTuple):
     """A mesh that can be worked with, and a sentence for each thing that was changed."""
 
     mesh: Mesh
     notes: list[str]
 
 
-class Unit(NamedTuple):
+class LengthUnit(NamedTuple):
     """Millimetres in a mesh's unit, and a sentence about it."""
 
     millimetres: float
     note: str
 
 
-def check_mesh(mesh: Mesh, need_texture: bool = False) -> Checked:
+def repair_mesh(mesh: Mesh, need_texture: bool = False) -> RepairedMesh:
     """A surface turned outside, with at most two faces an edge, in one or few components.
 
     Left out, each with a note: vertices that are not finite, faces without an area or listed twice,
@@ -63,10 +69,12 @@ def check_mesh(mesh: Mesh, need_texture: bool = False) -> Checked:
     for repair in [*steps, _textured] if need_texture else steps:
         mesh, note = repair(mesh)
         notes += note
-    return Checked(_compact(mesh), notes)
+    return RepairedMesh(_compact(mesh), notes)
 
 
-def guess_millimetres(vertices: Float[np.ndarray, "vertices 3"], name: str = "The mesh") -> Unit:
+def guess_length_unit(
+    vertices: Float[np.ndarray, "vertices 3"], name: str = "The mesh"
+) -> LengthUnit:
     """The unit in which a mesh is as large as a face or a head, `FACE`.
 
     Raises `InputError` if it is in none of `UNITS`.
@@ -75,7 +83,7 @@ def guess_millimetres(vertices: Float[np.ndarray, "vertices 3"], name: str = "Th
     for unit, millimetres in UNITS.items():
         length = size * millimetres
         if FACE[0] <= length <= FACE[1]:
-            return Unit(
+            return LengthUnit(
                 millimetres, f"{name} is taken to be in {unit}: it is {length:.0f} mm long."
             )
     raise InputError(
@@ -102,7 +110,7 @@ def _check_range(mesh: Mesh, triangles: Int[np.ndarray, "t 3"], count: int, what
         )
 
 
-def _finite(mesh: Mesh) -> Checked:
+def _finite(mesh: Mesh) -> RepairedMesh:
     broken = ~np.isfinite(mesh.vertices).all(1)
     count = int(broken[np.unique(mesh.triangles)].sum())
     if count > DAMAGED * len(mesh.vertices):
@@ -114,7 +122,7 @@ def _finite(mesh: Mesh) -> Checked:
     return _without(mesh, broken[mesh.triangles].any(1), note)
 
 
-def _solid(mesh: Mesh) -> Checked:
+def _solid(mesh: Mesh) -> RepairedMesh:
     area = areas(mesh.vertices, mesh.triangles)
     flat = area <= 1e-12 * area.max()
     if flat.mean() > DAMAGED:
@@ -125,14 +133,14 @@ def _solid(mesh: Mesh) -> Checked:
     return _without(mesh, flat, f"{int(flat.sum()):,} faces without an area were left out.")
 
 
-def _unrepeated(mesh: Mesh) -> Checked:
+def _unrepeated(mesh: Mesh) -> RepairedMesh:
     _, first = np.unique(np.sort(mesh.triangles, 1), axis=0, return_index=True)
     again = np.ones(len(mesh.triangles), bool)
     again[first] = False
     return _without(mesh, again, f"{int(again.sum()):,} faces were listed twice.")
 
 
-def _manifold(mesh: Mesh) -> Checked:
+def _manifold(mesh: Mesh) -> RepairedMesh:
     """The two largest faces stay at every edge; what sticks to a surface is small."""
     area = areas(mesh.vertices, mesh.triangles)
     keys = edge_keys(half_edges(mesh.triangles), len(mesh.vertices))
@@ -149,8 +157,8 @@ def _manifold(mesh: Mesh) -> Checked:
     return _without(mesh, dropped, note)
 
 
-def _largest(mesh: Mesh) -> Checked:
-    label = face_components(mesh.triangles)
+def _largest(mesh: Mesh) -> RepairedMesh:
+    label = label_face_components(mesh.triangles)
     area = np.bincount(label, areas(mesh.vertices, mesh.triangles))
     share = area / area.sum()
     if share.max() < 0.5:
@@ -166,18 +174,18 @@ def _largest(mesh: Mesh) -> Checked:
     return _without(mesh, dropped[label], note)
 
 
-def _agreeing(mesh: Mesh) -> Checked:
-    turn = disagreeing(mesh.vertices, mesh.triangles)
+def _agreeing(mesh: Mesh) -> RepairedMesh:
+    turn = find_inconsistent_faces(mesh.vertices, mesh.triangles)
     note = f"{int(turn.sum()):,} faces were turned to agree with their neighbours."
     return _turned(mesh, turn, note)
 
 
-def _outward(mesh: Mesh) -> Checked:
-    turn = np.full(len(mesh.triangles), inside_out(mesh.vertices, mesh.triangles))
+def _outward(mesh: Mesh) -> RepairedMesh:
+    turn = np.full(len(mesh.triangles), is_inside_out(mesh.vertices, mesh.triangles))
     return _turned(mesh, turn, "The faces looked inside, and all were turned.")
 
 
-def _textured(mesh: Mesh) -> Checked:
+def _textured(mesh: Mesh) -> RepairedMesh:
     uv, triangles, texture = mesh.uv, mesh.uv_triangles, mesh.texture
     if uv is None or triangles is None:
         fault = "no texture coordinates (UV); export it with them, as OBJ or glTF"
@@ -200,11 +208,11 @@ def _textured(mesh: Mesh) -> Checked:
 
 def _tiled(
     mesh: Mesh, uv: Float[np.ndarray, "points 2"], triangles: Int[np.ndarray, "triangles 3"]
-) -> Checked:
+) -> RepairedMesh:
     corners = uv[triangles]
     outside = int(((corners < 0) | (corners > 1)).any((1, 2)).sum())
     if not outside:
-        return Checked(mesh, [])
+        return RepairedMesh(mesh, [])
     placed = corners - np.floor(corners.mean(1, keepdims=True))
     jutting = int((np.abs(placed - 0.5) > 0.5 + JUTTING).any((1, 2)).sum())
     if jutting:
@@ -212,27 +220,27 @@ def _tiled(
             f"{mesh.name} has {jutting:,} faces across the border of its texture (texture "
             f"coordinates {uv.min():.3g} to {uv.max():.3g}); unwrap it onto [0, 1]."
         )
-    wrapped, moved = wrap(uv, triangles)
+    wrapped, moved = wrap_coordinates(uv, triangles)
     note = f"The texture was repeated for {outside:,} faces outside of it."
-    return Checked(replace(mesh, uv=wrapped, uv_triangles=moved), [f"{mesh.name}: {note}"])
+    return RepairedMesh(replace(mesh, uv=wrapped, uv_triangles=moved), [f"{mesh.name}: {note}"])
 
 
-def _without(mesh: Mesh, dropped: Choice, note: str) -> Checked:
+def _without(mesh: Mesh, dropped: Choice, note: str) -> RepairedMesh:
     if not dropped.any():
-        return Checked(mesh, [])
+        return RepairedMesh(mesh, [])
     if dropped.all():
         raise InputError(f"{mesh.name} has no sound face; export it again.")
     uv_triangles = None if mesh.uv_triangles is None else mesh.uv_triangles[~dropped]
     kept = replace(mesh, triangles=mesh.triangles[~dropped], uv_triangles=uv_triangles)
-    return Checked(kept, [f"{mesh.name}: {note}"])
+    return RepairedMesh(kept, [f"{mesh.name}: {note}"])
 
 
-def _turned(mesh: Mesh, turn: Choice, note: str) -> Checked:
+def _turned(mesh: Mesh, turn: Choice, note: str) -> RepairedMesh:
     if not turn.any():
-        return Checked(mesh, [])
-    uv_triangles = None if mesh.uv_triangles is None else turned(mesh.uv_triangles, turn)
-    triangles = turned(mesh.triangles, turn)
-    return Checked(
+        return RepairedMesh(mesh, [])
+    uv_triangles = None if mesh.uv_triangles is None else flip_triangles(mesh.uv_triangles, turn)
+    triangles = flip_triangles(mesh.triangles, turn)
+    return RepairedMesh(
         replace(mesh, triangles=triangles, uv_triangles=uv_triangles), [f"{mesh.name}: {note}"]
     )
 

@@ -4,7 +4,7 @@ import numpy as np
 from jaxtyping import Float, Shaped
 
 
-def bilinear(
+def sample_bilinear(
     picture: Shaped[np.ndarray, "height width channels"], uv: Float[np.ndarray, "points 2"]
 ) -> Float[np.ndarray, "points channels"]:
     """Values at texture coordinates, float32, in the picture's own scale.

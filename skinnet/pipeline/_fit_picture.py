@@ -6,9 +6,9 @@ from jaxtyping import Float, UInt8
 from skinnet.inference.panel import TILE, mapped, picture, sheet
 from skinnet.mesh.mesh import Mesh
 from skinnet.render._shading import render
-from skinnet.render.lights import Directional, SphericalHarmonics
-from skinnet.render.views import Perspective, front
-from skinnet.render.visibility import geometry
+from skinnet.render.lights import DirectionalLight, SphericalHarmonics
+from skinnet.render.views import PerspectiveView, frame_face
+from skinnet.render.visibility import trace_geometry
 from skinnet.shape.registration import Registration
 
 PLASTER = np.array([0.55, 0.53, 0.5])
@@ -22,8 +22,8 @@ _BACKDROP = (0.75, 0.75, 0.75)
 
 def fit_sheet(scan: Mesh, model: Mesh, found: Registration) -> UInt8[np.ndarray, "h w 3"]:
     """The scan, the model fitted to it, and how far they are apart, from ahead."""
-    view = front(model.vertices, (SIDE, SIDE))
-    buffers = geometry(model, view)
+    view = frame_face(model.vertices, (SIDE, SIDE))
+    buffers = trace_geometry(model, view)
     corners = model.triangles[buffers.triangle]
     distance = np.zeros(buffers.hit.shape)
     distance[buffers.hit] = (found.distances[corners] * buffers.barycentric).sum(1)
@@ -42,7 +42,7 @@ def fit_sheet(scan: Mesh, model: Mesh, found: Registration) -> UInt8[np.ndarray,
     return sheet(tiles, len(tiles))
 
 
-def plaster(mesh: Mesh, view: Perspective) -> UInt8[np.ndarray, "height width 3"]:
+def plaster(mesh: Mesh, view: PerspectiveView) -> UInt8[np.ndarray, "height width 3"]:
     """A mesh as a cast, its texture left aside."""
     return lit(mesh, PLASTER, view)
 
@@ -50,12 +50,12 @@ def plaster(mesh: Mesh, view: Perspective) -> UInt8[np.ndarray, "height width 3"
 def lit(
     mesh: Mesh,
     albedo: Float[np.ndarray, "*texels 3"],
-    view: Perspective,
+    view: PerspectiveView,
     specular: float = 0.0,
 ) -> UInt8[np.ndarray, "height width 3"]:
     """A mesh before a wall, under a lamp with soft shadows and a pale sky."""
     lights = (
-        Directional((-0.45, 0.55, 0.75), 0.75, angle=6.0),
+        DirectionalLight((-0.45, 0.55, 0.75), 0.75, angle=6.0),
         SphericalHarmonics.sky((0.55, 0.57, 0.6), (0.2, 0.2, 0.2)),
     )
     return render(mesh, albedo, lights, view, specular=specular, background=_BACKDROP)

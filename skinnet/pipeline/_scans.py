@@ -11,7 +11,7 @@ from jsonargparse import ArgumentParser, Namespace
 from skinnet.errors import InputError
 from skinnet.mesh.mesh import Mesh
 from skinnet.mesh.mesh_file import read_mesh
-from skinnet.mesh.repair import check_mesh
+from skinnet.mesh.repair import repair_mesh
 from skinnet.pipeline._progress import log
 from skinnet.pipeline.command import add_output, output_folder
 from skinnet.shape.landmarks import check_landmarks, read_landmarks
@@ -66,7 +66,7 @@ def load_scan(path: Path, model: ShapeModel, options: ScanOptions, textured: boo
     mesh = read_mesh(path, options.texture)
     marks = options.landmarks or next((file for file in beside(path) if file.is_file()), None)
     points = None if marks is None else read_landmarks(marks, mesh)
-    checked = check_mesh(mesh, textured)
+    checked = repair_mesh(mesh, textured)
     notes = list(checked.notes)
     if points is None:
         notes.append(f"{path} has no landmarks; its face is looked for from ahead.")

@@ -9,8 +9,8 @@ from skinnet.errors import NoFaceError
 from skinnet.images.faces import find_face
 from skinnet.mesh.mesh import Mesh
 from skinnet.render.scene import Scene
-from skinnet.render.views import Orthographic
-from skinnet.render.visibility import GeometryBuffers, geometry
+from skinnet.render.views import OrthographicView
+from skinnet.render.visibility import GeometryBuffers, trace_geometry
 from skinnet.shape._icp import FitSettings, Stage
 from skinnet.shape._scan_points import Surface
 from skinnet.shape.model import ShapeModel
@@ -49,8 +49,8 @@ def _face(mesh: Mesh) -> tuple[Float[np.ndarray, "3"], float]:
     low, high = mesh.vertices.min(0), mesh.vertices.max(0)
     scale = PIXELS / (1.1 * float((high - low)[:2].max()))
     eye = np.array([*(low + high)[:2] / 2, high[2] + 1 / scale])
-    view = Orthographic((PIXELS, PIXELS), eye, np.eye(3), scale)
-    buffers = geometry(Scene(mesh), view)
+    view = OrthographicView((PIXELS, PIXELS), eye, np.eye(3), scale)
+    buffers = trace_geometry(Scene(mesh), view)
     box = find_face(_plaster(buffers))
     if box is None:
         raise NoFaceError(

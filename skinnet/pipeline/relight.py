@@ -9,8 +9,8 @@ from jaxtyping import Float32, UInt8
 from skinnet.errors import InputError
 from skinnet.mesh.mesh import Mesh
 from skinnet.render._shading import SKIN_SPECULAR, render
-from skinnet.render.lights import Directional, Light, SphericalHarmonics
-from skinnet.render.views import front
+from skinnet.render.lights import DirectionalLight, Light, SphericalHarmonics
+from skinnet.render.views import frame_face
 
 Direction = tuple[float, float, float]
 
@@ -61,7 +61,7 @@ class RelightSettings:
     def lights(self) -> Sequence[Light]:
         """The lamps and the sky."""
         lamps = [
-            Directional(direction, strength, self.width)
+            DirectionalLight(direction, strength, self.width)
             for direction, strength in zip(self.lamps, self.strengths, strict=True)
         ]
         if self.harmonics is not None:
@@ -72,7 +72,7 @@ class RelightSettings:
         self, mesh: Mesh, albedo: Float32[np.ndarray, "size size 3"]
     ) -> UInt8[np.ndarray, "h w 3"]:
         """A face with a linear albedo texture, uint8 sRGB."""
-        view = front(mesh.vertices, (self.size, self.size), self.turn, self.tilt)
+        view = frame_face(mesh.vertices, (self.size, self.size), self.turn, self.tilt)
         gloss = SKIN_SPECULAR if self.gloss else 0.0
         grey = (0.75, 0.75, 0.75)
         return render(mesh, albedo, self.lights(), view, 2, self.shadows, gloss, background=grey)

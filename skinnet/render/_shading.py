@@ -9,12 +9,12 @@ from jaxtyping import Float, Shaped, UInt8
 from skinnet.errors import InputError
 from skinnet.images.photograph import linear_to_srgb, to_uint8
 from skinnet.mesh.mesh import Mesh
-from skinnet.mesh.normals import unit
-from skinnet.mesh.sampling import bilinear
+from skinnet.mesh.normals import normalise
+from skinnet.mesh.sampling import sample_bilinear
 from skinnet.render.lights import Light
 from skinnet.render.scene import Scene
 from skinnet.render.views import View
-from skinnet.render.visibility import GeometryBuffers, geometry
+from skinnet.render.visibility import GeometryBuffers, trace_geometry
 
 SKIN_SPECULAR = 0.028
 """Reflectance at normal incidence of skin, refractive index 1.4."""
@@ -25,20 +25,20 @@ EXPONENT = 20.0
 Albedo = Shaped[np.ndarray, "rows columns 3"] | Float[np.ndarray, "3"]
 
 
-class Relit(NamedTuple):
+class ShadedImage(NamedTuple):
     """Linear light on black, and the share of each pixel that the mesh covers."""
 
     image: Float[np.ndarray, "height width 3"]
     alpha: Float[np.ndarray, "height width"]
 
 
-def relight(
+def shade(
     buffers: GeometryBuffers,
     albedo: Albedo,
     lights: Sequence[Light],
     shadows: bool = True,
     specular: float = 0.0,
-) -> Relit:
+) -> ShadedImage:
     """A diffuse surface under lights, in linear sRGB: albedo times irradiance over pi.
 
     `albedo` is a linear texture [n, m, 3] looked up at the mesh's texture coordinates, or one
@@ -55,7 +55,7 @@ def relight(
         irradiance, direction = lamp.arrive(buffers, shadows)
         light += irradiance
         if specular and direction is not None:
-            halfway = unit(buffers.towards + direction)
+            halfway = normalise(buffers.towards + direction)
             cosine = np.einsum("px,px->p", buffers.normal, halfway).clip(0)
             gloss += irradiance * (specular * (EXPONENT + 8) / 8 * cosine**EXPONENT)[:, None]
     return _pixels(buffers, colour * light + gloss)
@@ -75,7 +75,7 @@ def render(
 
     Light above 1 is clipped; `background` is linear.
     """
-    relit = relight(geometry(mesh, view, samples), albedo, lights, shadows, specular)
+    relit = shade(trace_geometry(mesh, view, samples), albedo, lights, shadows, specular)
     behind = (1 - relit.alpha)[..., None] * np.array(background)
     return to_uint8(linear_to_srgb(relit.image + behind))
 
@@ -88,10 +88,10 @@ def _albedo(buffers: GeometryBuffers, albedo: Albedo) -> Float[np.ndarray, "hits
             f"{buffers.scene.mesh.name} has no texture coordinates to look an albedo texture up "
             "at; give one colour, or a mesh with texture coordinates."
         )
-    return bilinear(albedo, buffers.uv)
+    return sample_bilinear(albedo, buffers.uv)
 
 
-def _pixels(buffers: GeometryBuffers, values: Float[np.ndarray, "hits 3"]) -> Relit:
+def _pixels(buffers: GeometryBuffers, values: Float[np.ndarray, "hits 3"]) -> ShadedImage:
     """Means over the samples of each pixel."""
     height, width = (side // buffers.samples for side in buffers.hit.shape)
     sampled = np.zeros((*buffers.hit.shape, 4))
@@ -99,4 +99,4 @@ def _pixels(buffers: GeometryBuffers, values: Float[np.ndarray, "hits 3"]) -> Re
     sampled[buffers.hit, 3] = 1
     blocks = sampled.reshape(height, buffers.samples, width, buffers.samples, 4)
     mean = blocks.mean((1, 3))
-    return Relit(mean[..., :3], mean[..., 3])
+    return ShadedImage(mean[..., :3], mean[..., 3])

@@ -12,7 +12,7 @@ import numpy as np
 from jaxtyping import Float
 
 from skinnet.errors import InputError
-from skinnet.mesh.normals import unit
+from skinnet.mesh.normals import normalise
 from skinnet.render.visibility import GeometryBuffers
 
 CONVOLUTION = np.repeat([1, 2 / 3, 1 / 4], [1, 3, 5])
@@ -37,7 +37,7 @@ class Light(Protocol):
 
 
 @dataclass(frozen=True)
-class Directional:
+class DirectionalLight:
     """A distant light. `direction` points to it, of any length.
 
     `colour`, one number or three, is the radiance of a white diffuse surface that faces it: its
@@ -55,7 +55,7 @@ class Directional:
         direction = np.asarray(self.direction, np.float64)
         if not (np.isfinite(direction).all() and direction.any()):
             raise InputError(f"A light's direction has a length; got {self.direction}.")
-        direction = unit(direction)
+        direction = normalise(direction)
         cosine = (buffers.normal @ direction).clip(0)
         if shadows:
             cosine = cosine * buffers.lit(direction, self.angle, self.rays)
@@ -86,7 +86,7 @@ class SphericalHarmonics:
         ring = np.sqrt(1 - y * y)
         directions = np.stack([ring * np.sin(turn), y, ring * np.cos(turn)], 1)
         area = np.repeat(weight, 128) * (2 * np.pi / 128)
-        return cls((harmonics(directions) * area[:, None]).T @ radiance(directions))
+        return cls((evaluate_harmonics(directions) * area[:, None]).T @ radiance(directions))
 
     @classmethod
     def sky(
@@ -103,7 +103,9 @@ class SphericalHarmonics:
         """Irradiance over pi of surfaces with these unit normals; never below 0, where nine
         coefficients can take it."""
         coefficients = np.broadcast_to(self.coefficients.reshape(9, -1), (9, 3))
-        folded: Float[np.ndarray, "points 3"] = harmonics(normals) * CONVOLUTION @ coefficients
+        folded: Float[np.ndarray, "points 3"] = (
+            evaluate_harmonics(normals) * CONVOLUTION @ coefficients
+        )
         return folded.clip(0)
 
     def arrive(self, buffers: GeometryBuffers, shadows: bool) -> Arrival:
@@ -112,7 +114,7 @@ class SphericalHarmonics:
         return Arrival(irradiance * buffers.openness()[:, None] if shadows else irradiance, None)
 
 
-def harmonics(directions: Float[np.ndarray, "points 3"]) -> Float[np.ndarray, "points 9"]:
+def evaluate_harmonics(directions: Float[np.ndarray, "points 3"]) -> Float[np.ndarray, "points 9"]:
     """The nine real spherical harmonics up to degree 2 of unit directions."""
     x, y, z = directions.T
     one = np.sqrt(3 / (4 * np.pi))

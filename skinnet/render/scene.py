@@ -10,7 +10,7 @@ from jaxtyping import Bool, Float, Int
 
 from skinnet.errors import InputError
 from skinnet.mesh.mesh import Mesh
-from skinnet.mesh.normals import smooth_normals, unit
+from skinnet.mesh.normals import compute_vertex_normals, normalise
 
 BIAS = 1e-4
 """Distance from the surface at which shadow rays start, as a share of the mesh's extent."""
@@ -33,7 +33,7 @@ class Scene:
         if len(mesh.triangles) == 0 or not np.isfinite(mesh.vertices).all():
             raise InputError(f"{mesh.name} has no triangles or vertices that are not finite.")
         self.mesh = mesh
-        self.normals = smooth_normals(mesh.vertices, mesh.triangles)
+        self.normals = compute_vertex_normals(mesh.vertices, mesh.triangles)
         low, high = mesh.vertices.min(0), mesh.vertices.max(0)
         self.middle, self.extent = (low + high) / 2, float((high - low).max())
         self._embree = EmbreeScene(robust=True)
@@ -71,11 +71,11 @@ class Scene:
 
     def _openness(self, normals: Float[np.ndarray, "vertices 3"]) -> Float[np.ndarray, "vertices"]:
         starts = self.local(self.mesh.vertices + BIAS * self.extent * normals)
-        right, up = tangents(normals)
+        right, up = build_tangents(normals)
         turn = 2 * np.pi * np.random.default_rng(0).random((len(starts), 1))
         blocked = np.zeros(len(starts))
-        for x, y in disc(SKY_RAYS):
-            along, across = turned(x, y, turn)
+        for x, y in sample_disc(SKY_RAYS):
+            along, across = rotate(x, y, turn)
             height = np.sqrt(1 - x * x - y * y)
             blocked += self.blocked(starts, along * right + across * up + height * normals)
         return 1 - blocked / SKY_RAYS
@@ -95,25 +95,25 @@ def _crossing(
     in double precision; Embree's own are single."""
     a, b, c = np.moveaxis(corners, 1, 0)
     ab, ac, away = b - a, c - a, origins - a
-    across, turned = np.cross(directions, ac), np.cross(away, ab)
+    across, rotate = np.cross(directions, ac), np.cross(away, ab)
     volume = np.einsum("px,px->p", ab, across)
     volume = np.where(volume == 0, np.inf, volume)
     second = (np.einsum("px,px->p", away, across) / volume).clip(0, 1)
-    third = (np.einsum("px,px->p", directions, turned) / volume).clip(0, 1 - second)
+    third = (np.einsum("px,px->p", directions, rotate) / volume).clip(0, 1 - second)
     return np.stack([1 - second - third, second, third], 1)
 
 
-def tangents(
+def build_tangents(
     normals: Float[np.ndarray, "points 3"],
 ) -> tuple[Float[np.ndarray, "points 3"], Float[np.ndarray, "points 3"]]:
     """Two unit vectors square to each normal and to each other."""
     steep = np.abs(normals[:, :1]) > 0.6
     axis = np.where(steep, [[0.0, 1.0, 0.0]], [[1.0, 0.0, 0.0]])
-    right = unit(np.cross(axis, normals))
+    right = normalise(np.cross(axis, normals))
     return right, np.cross(normals, right)
 
 
-def turned(
+def rotate(
     x: float, y: float, turn: Float[np.ndarray, "points 1"]
 ) -> tuple[Float[np.ndarray, "points 1"], Float[np.ndarray, "points 1"]]:
     """A point of the plane turned about the origin by many angles."""
@@ -121,7 +121,7 @@ def turned(
     return x * cosine - y * sine, x * sine + y * cosine
 
 
-def disc(count: int) -> Float[np.ndarray, "count 2"]:
+def sample_disc(count: int) -> Float[np.ndarray, "count 2"]:
     """Points evenly over the unit disc, a sunflower's seeds; seen as heights of a hemisphere they
     are cosine-weighted directions."""
     number = np.arange(count)

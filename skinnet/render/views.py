@@ -33,7 +33,7 @@ class View(Protocol):
 
 
 @dataclass(frozen=True)
-class Perspective:
+class PerspectiveView:
     """A pinhole at `eye` with `focal` length in pixels and its axis through the picture's middle.
 
     The rows of `rotation` are the camera's right, up and backward axes in the world, in whose unit
@@ -59,7 +59,7 @@ class Perspective:
 
 
 @dataclass(frozen=True)
-class Orthographic:
+class OrthographicView:
     """Parallel rays: `eye` in the middle of the picture's plane, `scale` in pixels a unit.
 
     The rows of `rotation` are the camera's right, up and backward axes. Only what lies in front of
@@ -84,14 +84,14 @@ class Orthographic:
         return _pixels(self.size, local[:, :2] * self.scale)
 
 
-def front(
+def frame_face(
     vertices: Float[np.ndarray, "vertices 3"],
     size: tuple[int, int],
     turn: float = 0.0,
     tilt: float = 0.0,
     field: float = 20.0,
     fill: float = 0.92,
-) -> Perspective:
+) -> PerspectiveView:
     """A camera before a face, as near as leaves all of it within `fill` of the picture.
 
     From straight ahead (+z, y up) it goes `turn` degrees around to the face's left and then `tilt`
@@ -100,7 +100,7 @@ def front(
     height, width = size
     if min(size) < 1:
         raise InputError(f"A picture has at least one pixel a side; got {height} x {width}.")
-    rotation = orbit(turn, tilt)
+    rotation = view_axes(turn, tilt)
     focal = height / 2 / np.tan(np.deg2rad(field) / 2)
     low, high = (vertices @ rotation.T).min(0), (vertices @ rotation.T).max(0)
     middle = (low + high) / 2
@@ -108,10 +108,10 @@ def front(
     half = np.array([width, height]) / 2 * fill
     distance = (local[:, 2:] + np.abs(local[:, :2]) * focal / half).max()
     eye = (middle + [0, 0, distance]) @ rotation
-    return Perspective(size, eye, rotation, float(focal))
+    return PerspectiveView(size, eye, rotation, float(focal))
 
 
-def orbit(turn: float, tilt: float = 0.0) -> Float[np.ndarray, "3 3"]:
+def view_axes(turn: float, tilt: float = 0.0) -> Float[np.ndarray, "3 3"]:
     """Right, up and backward axes of a camera that looks at the origin from `turn` degrees to the
     left of a face and `tilt` degrees above it."""
     a, b = np.deg2rad(turn), np.deg2rad(tilt)

@@ -7,8 +7,8 @@ import numpy as np
 from jaxtyping import Bool, Float, Int
 
 from skinnet.mesh.mesh import Mesh
-from skinnet.mesh.normals import unit
-from skinnet.render.scene import BIAS, Scene, disc, tangents, turned
+from skinnet.mesh.normals import normalise
+from skinnet.render.scene import BIAS, Scene, build_tangents, rotate, sample_disc
 from skinnet.render.views import View
 
 
@@ -60,12 +60,12 @@ class GeometryBuffers:
         """
         facing = np.flatnonzero(self.normal @ direction > 0)
         start = self.scene.local(self.start[facing] + self._skip(direction, facing))
-        aims = disc(-(-rays // self.samples**2)) if angle else np.zeros((1, 2))
-        right, up = tangents(direction[None])
+        aims = sample_disc(-(-rays // self.samples**2)) if angle else np.zeros((1, 2))
+        right, up = build_tangents(direction[None])
         turn = 2 * np.pi * np.random.default_rng(0).random((len(facing) if angle else 1, 1))
         blocked = np.zeros(len(facing))
         for x, y in np.tan(np.deg2rad(angle) / 2) * aims:
-            along, across = turned(x, y, turn)
+            along, across = rotate(x, y, turn)
             blocked += self.scene.blocked(start, direction + along * right + across * up)
         reached = np.zeros(len(self.position))
         reached[facing] = 1 - blocked / len(aims)
@@ -76,12 +76,12 @@ class GeometryBuffers:
     ) -> Float[np.ndarray, "chosen 3"]:
         """A triangle's length towards a light from which the triangle turns and the smooth normal
         does not: without it a coarse mesh is dappled with dark triangles."""
-        turned = np.flatnonzero(self.face[chosen] @ direction < 0)
-        triangles = self.scene.mesh.triangles[self.triangle[chosen[turned]]]
+        rotate = np.flatnonzero(self.face[chosen] @ direction < 0)
+        triangles = self.scene.mesh.triangles[self.triangle[chosen[rotate]]]
         corners = self.scene.mesh.vertices[triangles]
         longest = np.linalg.norm(corners - np.roll(corners, 1, 1), axis=2).max(1)
         skip = np.zeros((len(chosen), 3))
-        skip[turned] = longest[:, None] * direction
+        skip[rotate] = longest[:, None] * direction
         return skip
 
     def openness(self) -> Float[np.ndarray, "hits"]:
@@ -95,7 +95,7 @@ class GeometryBuffers:
         return open_
 
 
-def geometry(mesh: Mesh | Scene, view: View, samples: int = 1) -> GeometryBuffers:
+def trace_geometry(mesh: Mesh | Scene, view: View, samples: int = 1) -> GeometryBuffers:
     """The surface that a camera sees, at `samples` x `samples` places of every pixel.
 
     Hand in a `Scene` to take several views of one mesh.
@@ -108,7 +108,7 @@ def geometry(mesh: Mesh | Scene, view: View, samples: int = 1) -> GeometryBuffer
     mesh, towards = scene.mesh, -rays.directions[hit]
     corners = mesh.triangles[triangle]
     a, b, c = np.moveaxis(mesh.vertices[corners], 1, 0)
-    face = unit(np.cross(b - a, c - a))
+    face = normalise(np.cross(b - a, c - a))
     side = np.where(np.einsum("px,px->p", face, towards) < 0, -1.0, 1.0)[:, None]
     uv = None
     if mesh.uv is not None and mesh.uv_triangles is not None:
@@ -120,7 +120,7 @@ def geometry(mesh: Mesh | Scene, view: View, samples: int = 1) -> GeometryBuffer
         triangle,
         barycentric,
         _mean(barycentric, mesh.vertices[corners]),
-        side * unit(_mean(barycentric, scene.normals[corners])),
+        side * normalise(_mean(barycentric, scene.normals[corners])),
         side * face,
         side,
         towards,

@@ -18,7 +18,7 @@ from scipy.spatial import cKDTree
 
 from skinnet.errors import InputError
 from skinnet.files import BROKEN
-from skinnet.mesh._orientation import inside_out
+from skinnet.mesh._orientation import is_inside_out
 from skinnet.shape.model import ShapeModel, checked_model
 
 _LANDMARKS = {
@@ -122,7 +122,7 @@ def _completed(model: ShapeModel, marks: dict[str, list[float]]) -> ShapeModel:
     landmarks = {
         name: int(near.query(marks[mark])[1]) for name, mark in _LANDMARKS.items() if mark in marks
     }
-    turn = [0, 2, 1] if inside_out(model.mean, model.triangles) else [0, 1, 2]
+    turn = [0, 2, 1] if is_inside_out(model.mean, model.triangles) else [0, 1, 2]
     return replace(model, landmarks=landmarks, triangles=model.triangles[:, turn])
 
 

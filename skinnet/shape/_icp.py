@@ -6,7 +6,7 @@ import numpy as np
 from jaxtyping import Bool, Float
 
 from skinnet.errors import InputError
-from skinnet.mesh.normals import smooth_normals
+from skinnet.mesh.normals import compute_vertex_normals
 from skinnet.shape._moments import gather
 from skinnet.shape._scan_points import Nearest, Surface
 from skinnet.shape._separable import Separable, Solution, solve
@@ -104,7 +104,7 @@ class Stage:
         self.basis = model.basis[: self.modes, chosen]
         self.mean = model.mean[chosen].astype(np.float64)
         self.variances = model.variances[: self.modes].astype(np.float64)
-        self.normals = smooth_normals(model.shape(alpha), model.triangles)[chosen]
+        self.normals = compute_vertex_normals(model.shape(alpha), model.triangles)[chosen]
 
     def run(
         self, pose: Similarity, alpha: Float[np.ndarray, "some"]

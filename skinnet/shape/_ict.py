@@ -14,8 +14,8 @@ import numpy as np
 from jaxtyping import Float
 
 from skinnet.errors import InputError
-from skinnet.mesh._mesh_parts import obj_positions
-from skinnet.mesh._seams import positions_in, share_coordinates
+from skinnet.mesh._mesh_parts import read_obj_positions
+from skinnet.mesh._seams import match_positions, merge_coordinates
 from skinnet.mesh.mesh_file import read_mesh
 from skinnet.shape.landmarks import ibug_name
 from skinnet.shape.model import ShapeModel, checked_model
@@ -49,7 +49,7 @@ def ict_from_arrays(path: Path, arrays: Mapping[str, Any], whole: bool = False) 
         str(path),
     )
     # The arrays repeat coordinates that are the same.
-    uv, uv_triangles = share_coordinates(triangles, uv, uv_triangles)
+    uv, uv_triangles = merge_coordinates(triangles, uv, uv_triangles)
     model = replace(model, uv=uv, uv_triangles=uv_triangles)
     count = int(arrays["face_vertex_count"])
     return model if whole else _face(model, np.arange(len(model.mean)) < count)
@@ -63,11 +63,11 @@ def load_ict_folder(folder: Path, whole: bool = False) -> ShapeModel:
     there are no identities, or one has another number of vertices than the neutral mesh.
     """
     neutral = read_mesh(folder / NEUTRAL)
-    listed = obj_positions(folder / NEUTRAL)
+    listed = read_obj_positions(folder / NEUTRAL)
     files = sorted(folder.glob("identity[0-9][0-9][0-9].obj"))
     if not files:
         raise InputError(f"{folder} has {NEUTRAL}, but no identity000.obj; copy the whole folder.")
-    index = positions_in(listed, neutral.vertices)
+    index = match_positions(listed, neutral.vertices)
     basis = np.stack([_moved(file, listed)[index] for file in files]) - neutral.vertices
     model = checked_model(
         neutral.vertices,
@@ -84,7 +84,7 @@ def load_ict_folder(folder: Path, whole: bool = False) -> ShapeModel:
 
 
 def _moved(file: Path, listed: Float[np.ndarray, "listed 3"]) -> Float[np.ndarray, "listed 3"]:
-    positions = obj_positions(file)
+    positions = read_obj_positions(file)
     if positions.shape != listed.shape:
         raise InputError(
             f"{file} has {len(positions):,} vertices, and {NEUTRAL} has {len(listed):,}; "

@@ -10,7 +10,7 @@ from trimesh.remesh import subdivide
 from skinnet.errors import InputError
 from skinnet.mesh._topology import boundary, half_edges
 from skinnet.mesh.mesh import Mesh
-from skinnet.mesh.normals import smooth_normals
+from skinnet.mesh.normals import compute_vertex_normals
 
 DENSE = 60_000
 """A coarser scan is subdivided, all triangles into four, until it has this many points."""
@@ -50,7 +50,7 @@ class Surface:
             vertices, triangles = subdivide(vertices, triangles)
         used = np.unique(triangles)
         self.points = vertices[used]
-        self.normals = smooth_normals(vertices, triangles)[used]
+        self.normals = compute_vertex_normals(vertices, triangles)[used]
         self.tree = cKDTree(self.points)
         edge = np.zeros(len(vertices), bool)
         edge[half_edges(triangles)[boundary(triangles).ravel()].ravel()] = True

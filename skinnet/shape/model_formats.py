@@ -10,7 +10,7 @@ import numpy as np
 
 from skinnet.errors import InputError
 from skinnet.files import BROKEN, atomic
-from skinnet.mesh._mesh_parts import SUFFIXES
+from skinnet.mesh._mesh_parts import MESH_SUFFIXES
 from skinnet.shape._basel import load_basel_2009, load_basel_2017
 from skinnet.shape._default_model import default_model
 from skinnet.shape._ict import NEUTRAL, ict_from_arrays, load_ict_folder
@@ -93,7 +93,7 @@ def _from_folder(folder: Path, align: bool, millimetres: float | None) -> ShapeM
     for inner in (folder, folder / "FaceXModel"):
         if (inner / NEUTRAL).is_file():
             return load_ict_folder(inner)
-    files = sorted(each for each in folder.iterdir() if each.suffix.lower() in SUFFIXES)
+    files = sorted(each for each in folder.iterdir() if each.suffix.lower() in MESH_SUFFIXES)
     return load_registered(files, None, align, millimetres, str(folder))
 
 

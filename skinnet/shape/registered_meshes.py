@@ -7,12 +7,12 @@ import numpy as np
 from jaxtyping import Float, Int
 
 from skinnet.errors import InputError
-from skinnet.mesh._mesh_parts import Part, obj_positions, read_parts, stack
-from skinnet.mesh._seams import positions_in, share_coordinates
-from skinnet.mesh._texture_atlas import Page, join
+from skinnet.mesh._mesh_parts import MeshPart, concatenate, read_obj_positions, read_parts
+from skinnet.mesh._seams import match_positions, merge_coordinates
+from skinnet.mesh._texture_atlas import Page, pack_atlas
 from skinnet.mesh._topology import weld
 from skinnet.mesh.mesh import Mesh
-from skinnet.mesh.repair import guess_millimetres
+from skinnet.mesh.repair import guess_length_unit
 from skinnet.shape.model import ShapeModel
 from skinnet.shape.similarity import similarity
 
@@ -41,7 +41,7 @@ def load_registered(
     if not files:
         raise InputError(f"{name} has no meshes; give .obj, .ply, .glb or .gltf files.")
     read = [read_parts(Path(file)) for file in files]
-    stacked = [stack([part.corners for part in parts]) for parts in read]
+    stacked = [concatenate([part.corners for part in parts]) for parts in read]
     _check([(str(f), c.vertices, c.triangles) for f, c in zip(files, stacked, strict=True)])
     faces = np.stack([corners.vertices for corners in stacked])
     used, triangles = _joined(Path(files[0]), faces, stacked[0].triangles)
@@ -102,15 +102,15 @@ def _joined(
     used, place = np.unique(joint[triangles], return_inverse=True)
     if first.suffix.lower() != ".obj":
         return used, place.reshape(-1, 3)
-    order = np.argsort(positions_in(obj_positions(first), faces[0][used]), kind="stable")
+    order = np.argsort(match_positions(read_obj_positions(first), faces[0][used]), kind="stable")
     return used[order], np.argsort(order)[place].reshape(-1, 3)
 
 
-def _coordinates(parts: list[Part], triangles: Triangles) -> Coordinates:
-    atlas = join([Page(part.corners.triangles, part.uv, None, part.colour) for part in parts])
+def _coordinates(parts: list[MeshPart], triangles: Triangles) -> Coordinates:
+    atlas = pack_atlas([Page(part.corners.triangles, part.uv, None, part.colour) for part in parts])
     if atlas is None:
         return None, None
-    return share_coordinates(triangles, atlas.uv, atlas.triangles)
+    return merge_coordinates(triangles, atlas.uv, atlas.triangles)
 
 
 def _model(
@@ -139,7 +139,7 @@ def _model(
         first.triangles,
         first.uv,
         first.uv_triangles,
-        millimetres=millimetres or guess_millimetres(mean, name).millimetres,
+        millimetres=millimetres or guess_length_unit(mean, name).millimetres,
         name=name,
     )
     return model if modes is None else model.truncated(modes)

@@ -7,11 +7,11 @@ from jaxtyping import Bool, Float, Int
 
 from skinnet.errors import InputError
 from skinnet.images.photograph import srgb_to_linear
-from skinnet.mesh._topology import boundary, components, weld
-from skinnet.mesh.closest_point import Closest, ClosestPoints
+from skinnet.mesh._topology import boundary, label_components, weld
+from skinnet.mesh.closest_point import ClosestPoints, TriangleTree
 from skinnet.mesh.mesh import Mesh
-from skinnet.mesh.normals import smooth_normals, unit
-from skinnet.mesh.sampling import bilinear
+from skinnet.mesh.normals import compute_vertex_normals, normalise
+from skinnet.mesh.sampling import sample_bilinear
 from skinnet.texture.warp import TextureSpace, Warped, warp_texture
 
 NORMAL_LIMIT = 60.0
@@ -58,7 +58,7 @@ def project_texture(
     """
     _check(space, fitted, scan)
     source = _Scan(scan, limit, np.cos(np.deg2rad(normal_limit)))
-    normals = smooth_normals(fitted.vertices, fitted.triangles)
+    normals = compute_vertex_normals(fitted.vertices, fitted.triangles)
     places = source.places(fitted.vertices, normals)
     coordinates = places.uv[fitted.triangles]
     known = places.covered[fitted.triangles]
@@ -67,9 +67,9 @@ def project_texture(
     rest = np.flatnonzero((known.any(1) & ~whole)[space.owner])
     corners = np.concatenate([fitted.vertices, normals], 1)[fitted.triangles]
     position, normal = np.split(space.at(corners, rest), 2, axis=1)
-    single = source.places(position, unit(normal))
+    single = source.places(position, normalise(normal))
     row, column = (index[rest][single.covered] for index in np.nonzero(space.mask))
-    warped.image[row, column] = bilinear(source.texture, single.uv[single.covered])
+    warped.image[row, column] = sample_bilinear(source.texture, single.uv[single.covered])
     warped.mask[row, column] = True
     return warped
 
@@ -83,9 +83,9 @@ class _Scan:
         self.triangles, self.uv_triangles = scan.triangles, scan.uv_triangles
         self.vertices, self.uv = scan.vertices, scan.uv
         self.texture = srgb_to_linear(scan.texture)
-        self.normals = smooth_normals(scan.vertices, scan.triangles)
-        self.surface = ClosestPoints(scan.vertices, scan.triangles)
-        charts = components(scan.uv_triangles, len(scan.uv))
+        self.normals = compute_vertex_normals(scan.vertices, scan.triangles)
+        self.surface = TriangleTree(scan.vertices, scan.triangles)
+        charts = label_components(scan.uv_triangles, len(scan.uv))
         self.chart = charts[scan.uv_triangles[:, 0]]
         welded = weld(scan.vertices)[scan.triangles]
         self.open = boundary(welded)
@@ -99,7 +99,7 @@ class _Scan:
         """Closest points within the limit, and whether each shows the same piece of surface."""
         closest = self.surface.query(points, self.limit)
         triangle = closest.triangle
-        normal = unit(_mean(closest, self.normals[self.triangles[triangle]]))
+        normal = normalise(_mean(closest, self.normals[self.triangles[triangle]]))
         agrees = np.einsum("px,px->p", normal, normals) >= self.least_cosine
         return _Places(
             (triangle >= 0) & agrees & ~self._on_open_edge(closest),
@@ -109,7 +109,7 @@ class _Scan:
             self.density[triangle],
         )
 
-    def _on_open_edge(self, closest: Closest) -> Bool[np.ndarray, "points"]:
+    def _on_open_edge(self, closest: ClosestPoints) -> Bool[np.ndarray, "points"]:
         """Edge k lies opposite corner k + 2."""
         on_edge = np.roll(closest.barycentric <= ON_EDGE, -2, 1) & self.open[closest.triangle]
         at_corner = closest.barycentric >= 1 - ON_EDGE
@@ -126,7 +126,7 @@ def _density(
 
 
 def _mean(
-    closest: Closest, corners: Float[np.ndarray, "points 3 k"]
+    closest: ClosestPoints, corners: Float[np.ndarray, "points 3 k"]
 ) -> Float[np.ndarray, "points k"]:
     return np.asarray(np.einsum("pk,pkx->px", closest.barycentric, corners))
 

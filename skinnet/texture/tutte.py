@@ -10,7 +10,7 @@ from scipy.sparse import coo_array, diags_array
 from scipy.sparse.linalg import splu
 
 from skinnet.errors import InputError
-from skinnet.mesh._topology import boundary_loops, components, edge_keys, half_edges
+from skinnet.mesh._topology import boundary_loops, edge_keys, half_edges, label_components
 from skinnet.texture.mirror import with_mirror_images
 
 MARGIN = 1 / 128
@@ -106,7 +106,7 @@ def _check_one_piece(vertices: Vertices, triangles: Triangles) -> None:
             f"{(~used).sum()} of {len(vertices)} vertices belong to no triangle; remove them "
             "before embedding the mesh."
         )
-    sizes = np.bincount(components(triangles, len(vertices)))
+    sizes = np.bincount(label_components(triangles, len(vertices)))
     if len(sizes) > 1:
         raise InputError(
             f"The mesh to embed has {len(sizes)} separate pieces, of "

@@ -7,8 +7,8 @@ import numpy as np
 from jaxtyping import Bool, Float, Int, Shaped
 
 from skinnet.errors import InputError
-from skinnet.mesh.raster import rasterise, slopes
-from skinnet.mesh.sampling import bilinear
+from skinnet.mesh.raster import barycentric_gradients, rasterise
+from skinnet.mesh.sampling import sample_bilinear
 
 MOST_SAMPLES = 8
 """Samples along a texel, at most; a source still denser than that is not wholly averaged."""
@@ -117,7 +117,7 @@ def _jacobian(
     space: TextureSpace, coordinates: Float[np.ndarray, "triangles 3 2"]
 ) -> Float[np.ndarray, "triangles 2 2"]:
     """Change of the source's u and v (last axis) over one texel along columns and rows."""
-    change = slopes(space.uv[space.triangles] * [1, -1]) / space.size
+    change = barycentric_gradients(space.uv[space.triangles] * [1, -1]) / space.size
     return np.asarray(np.nan_to_num(np.einsum("tkd,tkx->tdx", change, coordinates)))
 
 
@@ -137,11 +137,11 @@ def _average(
     count: int,
 ) -> Float[np.ndarray, "texels channels"]:
     if count == 1:
-        return bilinear(texture, centres)
+        return sample_bilinear(texture, centres)
     steps = (np.arange(count) + 0.5) / count - 0.5
     along, down = jacobian[owner, 0], jacobian[owner, 1]
     total = np.zeros((len(centres), texture.shape[2]), np.float32)
     for x in steps:
         for y in steps:
-            total += bilinear(texture, centres + x * along + y * down)
+            total += sample_bilinear(texture, centres + x * along + y * down)
     return total / count**2

@@ -7,8 +7,8 @@ from jaxtyping import Float, Float16, Int8, UInt8, UInt64
 
 from skinnet.mesh.mesh import Mesh
 from skinnet.render.scene import Scene
-from skinnet.render.views import Orthographic, Perspective
-from skinnet.render.visibility import GeometryBuffers, geometry
+from skinnet.render.views import OrthographicView, PerspectiveView
+from skinnet.render.visibility import GeometryBuffers, trace_geometry
 from train.synthetic.directions import DIRECTIONS
 from train.synthetic.heads import Head
 
@@ -49,7 +49,7 @@ def cast(head: Head, draw: np.random.Generator, size: int) -> Buffers:
     return buffers(head, scene, draw_view(draw, size))
 
 
-def draw_view(draw: np.random.Generator, size: int) -> Orthographic | Perspective:
+def draw_view(draw: np.random.Generator, size: int) -> OrthographicView | PerspectiveView:
     """A camera that sees the head on half to three quarters of the picture's height."""
     turn = rotation(draw.normal(0, ANGLES).clip(-FARTHEST, FARTHEST))
     zoom = draw.uniform(0.48, 0.75)
@@ -59,8 +59,8 @@ def draw_view(draw: np.random.Generator, size: int) -> Orthographic | Perspectiv
     eye = np.array([*(-centre / zoom), FAR if far else distance]) @ turn
     scale = zoom * size / 2
     if far:
-        return Orthographic((size, size), eye, turn, scale)
-    return Perspective((size, size), eye, turn, scale * distance)
+        return OrthographicView((size, size), eye, turn, scale)
+    return PerspectiveView((size, size), eye, turn, scale * distance)
 
 
 def rotation(angles: Float[np.ndarray, "3"]) -> Float[np.ndarray, "3 3"]:
@@ -72,9 +72,9 @@ def rotation(angles: Float[np.ndarray, "3"]) -> Float[np.ndarray, "3 3"]:
     return about_z @ about_y @ about_x
 
 
-def buffers(head: Head, scene: Scene, view: Orthographic | Perspective) -> Buffers:
+def buffers(head: Head, scene: Scene, view: OrthographicView | PerspectiveView) -> Buffers:
     """What a camera sees; `scene` is the head's mesh."""
-    found = geometry(scene, view)
+    found = trace_geometry(scene, view)
     blank = _blank(view.size[0])
     hit, turn = found.hit, view.rotation
     corners = head.chart[head.triangles[found.triangle]]

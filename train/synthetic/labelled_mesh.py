@@ -6,7 +6,7 @@ from typing import NamedTuple
 import numpy as np
 from jaxtyping import Float, Int, UInt8
 
-from skinnet.mesh.normals import smooth_normals
+from skinnet.mesh.normals import compute_vertex_normals
 
 
 class Part(NamedTuple):
@@ -111,7 +111,7 @@ def only(whole: Part, label: int) -> Part:
 
 
 def normals(whole: Part) -> Float[np.ndarray, "vertices 3"]:
-    return smooth_normals(whole.vertices, whole.triangles)
+    return compute_vertex_normals(whole.vertices, whole.triangles)
 
 
 def at(skin: Part, azimuth: float, elevation: float) -> Float[np.ndarray, "3"]:

@@ -6,7 +6,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 from trimesh.triangles import closest_point
 
-from skinnet.mesh.closest_point import ClosestPoints
+from skinnet.mesh.closest_point import TriangleTree
 
 
 def brute(corners: np.ndarray, points: np.ndarray) -> np.ndarray:
@@ -22,7 +22,7 @@ def test_closest_points_are_those_of_looking_at_every_triangle(seed: int, count:
     vertices = generator.normal(size=(60, 3)) * 10 ** generator.uniform(-3, 1, (60, 1))
     triangles = generator.integers(0, 60, (count, 3))
     points = 3 * generator.normal(size=(50, 3))
-    found = ClosestPoints(vertices, triangles).query(points)
+    found = TriangleTree(vertices, triangles).query(points)
     corners = vertices[triangles]
     solid = (np.roll(triangles, 1, 1) != triangles).all(1)
     if solid.all():
@@ -35,12 +35,12 @@ def test_closest_points_are_those_of_looking_at_every_triangle(seed: int, count:
 def test_a_limit_leaves_out_what_is_farther() -> None:
     vertices, triangles = np.eye(3), np.array([[0, 1, 2]])
     points = np.array([[0.0, 0.0, 0.0], [5.0, 5.0, 5.0], [1.0, 0.0, 0.0]])
-    found = ClosestPoints(vertices, triangles).query(points, limit=1.0)
+    found = TriangleTree(vertices, triangles).query(points, limit=1.0)
     assert found.triangle.tolist() == [0, -1, 0]
     assert found.distance.tolist() == pytest.approx([3**-0.5, np.inf, 0.0])
     assert (found.barycentric[1] == 0).all()
 
 
 def test_no_queries_have_no_answers() -> None:
-    found = ClosestPoints(np.eye(3), np.array([[0, 1, 2]])).query(np.zeros((0, 3)))
+    found = TriangleTree(np.eye(3), np.array([[0, 1, 2]])).query(np.zeros((0, 3)))
     assert found.distance.shape == (0,) and found.barycentric.shape == (0, 3)

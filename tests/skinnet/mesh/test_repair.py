@@ -9,10 +9,10 @@ import trimesh
 from small_meshes import dome
 
 from skinnet.errors import InputError
-from skinnet.mesh._orientation import inside_out
+from skinnet.mesh._orientation import is_inside_out
 from skinnet.mesh.mesh import Mesh
 from skinnet.mesh.mesh_file import read_mesh
-from skinnet.mesh.repair import check_mesh, guess_millimetres
+from skinnet.mesh.repair import guess_length_unit, repair_mesh
 
 
 def joined(one: Mesh, *others: Mesh) -> Mesh:
@@ -39,7 +39,7 @@ def with_vertices(mesh: Mesh, **at: float) -> Mesh:
 
 def test_a_sound_mesh_is_left_alone() -> None:
     mesh = dome()
-    checked, notes = check_mesh(mesh, need_texture=True)
+    checked, notes = repair_mesh(mesh, need_texture=True)
     assert notes == []
     assert np.array_equal(checked.triangles, mesh.triangles)
     assert np.array_equal(checked.vertices, mesh.vertices)
@@ -48,20 +48,20 @@ def test_a_sound_mesh_is_left_alone() -> None:
 
 def test_a_mesh_without_faces_is_refused() -> None:
     with pytest.raises(InputError, match="dome has no faces"):
-        check_mesh(Mesh(dome().vertices, np.zeros((0, 3), int), name="dome"))
+        repair_mesh(Mesh(dome().vertices, np.zeros((0, 3), int), name="dome"))
 
 
 def test_faces_out_of_range_are_refused() -> None:
     mesh = dome()
     with pytest.raises(InputError, match="dome has a face with vertex 62, and there are 62"):
-        check_mesh(replace(mesh, vertices=mesh.vertices[:-1]))
+        repair_mesh(replace(mesh, vertices=mesh.vertices[:-1]))
     with pytest.raises(InputError, match="dome has a face with texture coordinate 62"):
-        check_mesh(replace(mesh, uv=mesh.uv[:-1]))
+        repair_mesh(replace(mesh, uv=mesh.uv[:-1]))
 
 
 def test_a_few_vertices_that_are_nan_are_left_out_with_their_faces() -> None:
     mesh = with_vertices(dome(), v0=np.nan, v3=np.inf)
-    checked, notes = check_mesh(mesh)
+    checked, notes = repair_mesh(mesh)
     assert notes == ["dome: 2 vertices that are NaN or infinite were left out with their faces."]
     assert np.isfinite(checked.vertices).all() and len(checked.vertices) == 61
     assert len(checked.uv_triangles) == len(checked.triangles)
@@ -70,7 +70,7 @@ def test_a_few_vertices_that_are_nan_are_left_out_with_their_faces() -> None:
 def test_many_vertices_that_are_nan_are_refused() -> None:
     mesh = with_vertices(dome(), **{f"v{i}": np.nan for i in range(20)})
     with pytest.raises(InputError, match="dome is damaged: 20 of its 63 vertices are NaN"):
-        check_mesh(mesh)
+        repair_mesh(mesh)
 
 
 def test_faces_without_area_and_repeated_ones_are_left_out() -> None:
@@ -78,7 +78,7 @@ def test_faces_without_area_and_repeated_ones_are_left_out() -> None:
     extra = np.array([[0, 0, 1], [5, 5, 5], [12, 11, 4]])
     triangles = np.concatenate([mesh.triangles, extra])
     assert sorted(extra[2]) in np.sort(mesh.triangles, 1).tolist()
-    checked, notes = check_mesh(Mesh(mesh.vertices, triangles, name="dome"))
+    checked, notes = repair_mesh(Mesh(mesh.vertices, triangles, name="dome"))
     assert notes == [
         "dome: 2 faces without an area were left out.",
         "dome: 1 faces were listed twice.",
@@ -86,7 +86,7 @@ def test_faces_without_area_and_repeated_ones_are_left_out() -> None:
     assert np.array_equal(checked.triangles, mesh.triangles)
     flat = np.concatenate([mesh.triangles, np.zeros((20, 3), int)])
     with pytest.raises(InputError, match="20 of its 116 faces have no area"):
-        check_mesh(Mesh(mesh.vertices, flat, name="dome"))
+        repair_mesh(Mesh(mesh.vertices, flat, name="dome"))
 
 
 def test_a_fin_at_an_edge_is_left_out() -> None:
@@ -96,7 +96,7 @@ def test_a_fin_at_an_edge_is_left_out() -> None:
     made = Mesh(
         np.concatenate([mesh.vertices, tip]), np.concatenate([mesh.triangles, fin]), name="dome"
     )
-    checked, notes = check_mesh(made)
+    checked, notes = repair_mesh(made)
     assert notes == [
         "dome: 1 edges had more than two faces (not manifold); the smallest 1 faces there were "
         "left out."
@@ -106,7 +106,7 @@ def test_a_fin_at_an_edge_is_left_out() -> None:
 
 def test_small_components_are_left_out_and_large_ones_stay() -> None:
     crumb, other = moved(dome(), 500.0, 0.1), moved(dome(), 900.0, 0.5)
-    checked, notes = check_mesh(joined(dome(), crumb, other))
+    checked, notes = repair_mesh(joined(dome(), crumb, other))
     assert notes == ["dome: 1 of 3 components were left out, 0.79% of the area."]
     assert len(checked.vertices) == 126
 
@@ -115,7 +115,7 @@ def test_a_mesh_in_pieces_is_refused() -> None:
     mesh = dome()
     soup = Mesh(mesh.vertices[mesh.triangles].reshape(-1, 3), np.arange(288).reshape(-1, 3))
     with pytest.raises(InputError, match=r"mesh is in 96 pieces, the largest with \d% of the area"):
-        check_mesh(soup)
+        repair_mesh(soup)
 
 
 @pytest.mark.parametrize("share", [0.3, 0.7, 1.0])
@@ -123,9 +123,9 @@ def test_turned_faces_are_turned_back(share: float) -> None:
     mesh = dome()
     turn = np.random.default_rng(0).random(len(mesh.triangles)) < share
     triangles = np.where(turn[:, None], mesh.triangles[:, ::-1], mesh.triangles)
-    checked, notes = check_mesh(replace(mesh, triangles=triangles, uv_triangles=triangles))
+    checked, notes = repair_mesh(replace(mesh, triangles=triangles, uv_triangles=triangles))
     assert len(notes) == (2 if share == 0.7 else 1)
-    assert not inside_out(checked.vertices, checked.triangles)
+    assert not is_inside_out(checked.vertices, checked.triangles)
     solid = trimesh.Trimesh(checked.vertices, checked.triangles, process=False)
     assert solid.is_winding_consistent
     assert np.array_equal(checked.triangles, checked.uv_triangles)
@@ -141,14 +141,14 @@ def test_a_strip_that_cannot_be_oriented_is_left_as_it_is() -> None:
     b, c, d = a + 1, (a + 2) % 48, (a + 3) % 48
     c[-1], d[-1] = 1, 0
     triangles = np.concatenate([np.stack([a, b, c], 1), np.stack([b, d, c], 1)])
-    checked, _ = check_mesh(Mesh(vertices, triangles))
+    checked, _ = repair_mesh(Mesh(vertices, triangles))
     assert len(checked.triangles) == 48
 
 
 def test_a_texture_is_needed_only_where_it_is_said_to_be() -> None:
     mesh = dome()
     bare = Mesh(mesh.vertices, mesh.triangles, name="scan.ply")
-    assert check_mesh(bare).notes == []
+    assert repair_mesh(bare).notes == []
     grey = np.repeat(mesh.texture[..., :1], 3, 2)
     cases = {
         "no texture coordinates": bare,
@@ -159,12 +159,12 @@ def test_a_texture_is_needed_only_where_it_is_said_to_be() -> None:
     }
     for fault, case in cases.items():
         with pytest.raises(InputError, match=f"{case.name} has .*{fault}"):
-            check_mesh(case, need_texture=True)
+            repair_mesh(case, need_texture=True)
 
 
 def test_coordinates_in_other_tiles_are_wrapped() -> None:
     mesh = dome()
-    checked, notes = check_mesh(replace(mesh, uv=mesh.uv + [2, -1]), need_texture=True)
+    checked, notes = repair_mesh(replace(mesh, uv=mesh.uv + [2, -1]), need_texture=True)
     assert notes == ["dome: The texture was repeated for 96 faces outside of it."]
     assert np.allclose(checked.uv[checked.uv_triangles], mesh.uv[mesh.uv_triangles])
 
@@ -172,7 +172,7 @@ def test_coordinates_in_other_tiles_are_wrapped() -> None:
 def test_faces_across_the_border_of_the_texture_are_refused() -> None:
     mesh = dome()
     with pytest.raises(InputError, match=r"dome has 16 faces across the border of its texture"):
-        check_mesh(replace(mesh, uv=mesh.uv + [0.1, 0]), need_texture=True)
+        repair_mesh(replace(mesh, uv=mesh.uv + [0.1, 0]), need_texture=True)
 
 
 @pytest.mark.parametrize(
@@ -182,7 +182,7 @@ def test_faces_across_the_border_of_the_texture_are_refused() -> None:
 @pytest.mark.parametrize("height", [110, 180, 580])
 def test_the_unit_is_guessed(unit: str, millimetres: float, height: float) -> None:
     mesh = dome(height=height / millimetres)
-    guess = guess_millimetres(mesh.vertices, "scan.obj")
+    guess = guess_length_unit(mesh.vertices, "scan.obj")
     assert guess.millimetres == millimetres
     assert guess.note == f"scan.obj is taken to be in {unit}: it is {height} mm long."
 
@@ -190,11 +190,11 @@ def test_the_unit_is_guessed(unit: str, millimetres: float, height: float) -> No
 @pytest.mark.parametrize("height", [0.0, 3.0, 7000.0])
 def test_a_size_that_is_no_face_is_refused(height: float) -> None:
     with pytest.raises(InputError, match=r"The mesh is .* units long, which is no face"):
-        guess_millimetres(dome(height=height).vertices)
+        guess_length_unit(dome(height=height).vertices)
 
 
 def test_real_scans_need_little(shared_data: Path) -> None:
-    _, notes = check_mesh(read_mesh(shared_data / "scans/lps/head.obj"), need_texture=True)
+    _, notes = repair_mesh(read_mesh(shared_data / "scans/lps/head.obj"), need_texture=True)
     assert notes == []
-    _, notes = check_mesh(read_mesh(shared_data / "scans/james/james.obj"), need_texture=True)
+    _, notes = repair_mesh(read_mesh(shared_data / "scans/james/james.obj"), need_texture=True)
     assert len(notes) == 1 and "9 of 10 components were left out, 0.16% of the area" in notes[0]

@@ -5,8 +5,8 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from skinnet.mesh.normals import unit
-from skinnet.render.lights import SphericalHarmonics, harmonics
+from skinnet.mesh.normals import normalise
+from skinnet.render.lights import SphericalHarmonics, evaluate_harmonics
 
 
 def sphere(count: int = 200_000) -> np.ndarray:
@@ -18,7 +18,7 @@ def sphere(count: int = 200_000) -> np.ndarray:
 
 
 def test_harmonics_are_orthonormal() -> None:
-    values = harmonics(sphere())
+    values = evaluate_harmonics(sphere())
     assert np.allclose(values.T @ values * 4 * np.pi / len(values), np.eye(9), atol=1e-4)
 
 
@@ -27,9 +27,9 @@ def test_irradiance_is_the_cosine_weighted_integral_over_pi(seed: int) -> None:
     generator = np.random.default_rng(seed)
     coefficients = generator.normal(size=(9, 3))
     coefficients[0] += 6
-    normals = unit(generator.normal(size=(4, 3)))
+    normals = normalise(generator.normal(size=(4, 3)))
     directions = sphere(20_000)
-    radiance = harmonics(directions) @ coefficients
+    radiance = evaluate_harmonics(directions) @ coefficients
     cosine = (normals @ directions.T).clip(0)
     expected = cosine @ radiance * 4 * np.pi / len(directions) / np.pi
     light = SphericalHarmonics(coefficients)
@@ -39,7 +39,7 @@ def test_irradiance_is_the_cosine_weighted_integral_over_pi(seed: int) -> None:
 def test_constant_radiance_lights_a_white_surface_as_itself() -> None:
     grey = SphericalHarmonics.project(lambda directions: np.full(directions.shape, 0.7))
     assert grey.coefficients[0] == pytest.approx([0.7 * np.sqrt(4 * np.pi)] * 3)
-    normals = unit(np.random.default_rng(0).normal(size=(20, 3)))
+    normals = normalise(np.random.default_rng(0).normal(size=(20, 3)))
     assert np.allclose(grey.irradiance(normals), 0.7)
     one = SphericalHarmonics(np.r_[0.7 * np.sqrt(4 * np.pi), np.zeros(8)])
     assert np.allclose(one.irradiance(normals), 0.7)
@@ -47,7 +47,9 @@ def test_constant_radiance_lights_a_white_surface_as_itself() -> None:
 
 def test_projection_gives_back_coefficients() -> None:
     coefficients = np.random.default_rng(0).normal(size=(9, 3))
-    found = SphericalHarmonics.project(lambda directions: harmonics(directions) @ coefficients)
+    found = SphericalHarmonics.project(
+        lambda directions: evaluate_harmonics(directions) @ coefficients
+    )
     assert np.allclose(found.coefficients, coefficients, atol=1e-12)
 
 

@@ -6,16 +6,16 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from skinnet.errors import InputError
-from skinnet.render.views import Orthographic, Perspective, View, front, orbit
+from skinnet.render.views import OrthographicView, PerspectiveView, View, frame_face, view_axes
 
 HEAD = np.random.default_rng(0).normal(size=(500, 3)) * [70, 100, 80] + [3, -20, 40]
 
 
 def views() -> list[View]:
-    axes = orbit(25.0, 10.0)
+    axes = view_axes(25.0, 10.0)
     return [
-        Perspective((30, 40), 5 * axes[2], axes, 55.0),
-        Orthographic((30, 40), 5 * axes[2], axes, 12.0),
+        PerspectiveView((30, 40), 5 * axes[2], axes, 55.0),
+        OrthographicView((30, 40), 5 * axes[2], axes, 12.0),
     ]
 
 
@@ -31,19 +31,19 @@ def test_a_point_on_a_ray_is_seen_in_its_pixel(view: View, samples: int) -> None
 
 
 def test_from_the_front_up_is_up_and_the_left_side_is_at_the_right() -> None:
-    view = front(HEAD, (200, 160))
+    view = frame_face(HEAD, (200, 160))
     up, left, middle = view.project(HEAD.mean(0) + [[0, 50, 0], [50, 0, 0], [0, 0, 0]])
     assert up[1] < middle[1] - 5 and left[0] > middle[0] + 5
-    turned = front(HEAD, (200, 160), turn=90.0)
+    turned = frame_face(HEAD, (200, 160), turn=90.0)
     assert np.allclose(turned.rotation[2], [1, 0, 0])
-    assert np.allclose(front(HEAD, (200, 160), tilt=90.0).rotation[2], [0, 1, 0])
+    assert np.allclose(frame_face(HEAD, (200, 160), tilt=90.0).rotation[2], [0, 1, 0])
 
 
 @given(st.floats(-180, 180), st.floats(-80, 80), st.floats(5, 70), st.sampled_from([120, 200, 333]))
 def test_front_leaves_the_whole_face_inside(
     turn: float, tilt: float, field: float, width: int
 ) -> None:
-    view = front(HEAD, (200, width), turn, tilt, field, fill=0.9)
+    view = frame_face(HEAD, (200, width), turn, tilt, field, fill=0.9)
     assert np.allclose(view.rotation @ view.rotation.T, np.eye(3), atol=1e-12)
     assert np.linalg.det(view.rotation) > 0
     share = np.abs(view.project(HEAD) / [width / 2, 100] - 1)
@@ -52,4 +52,4 @@ def test_front_leaves_the_whole_face_inside(
 
 def test_a_picture_without_pixels_is_refused() -> None:
     with pytest.raises(InputError, match="0 x 20"):
-        front(HEAD, (0, 20))
+        frame_face(HEAD, (0, 20))

@@ -6,10 +6,10 @@ from trimesh.creation import box, icosphere
 
 from skinnet.errors import InputError
 from skinnet.mesh.mesh import Mesh
-from skinnet.mesh.normals import unit
+from skinnet.mesh.normals import normalise
 from skinnet.render.scene import Scene
-from skinnet.render.views import Orthographic, Perspective, orbit
-from skinnet.render.visibility import geometry
+from skinnet.render.views import OrthographicView, PerspectiveView, view_axes
+from skinnet.render.visibility import trace_geometry
 
 
 def square(half: float, z: float = 0.0) -> Mesh:
@@ -28,16 +28,16 @@ def joined(*meshes: Mesh) -> Mesh:
     )
 
 
-def from_above(size: int = 40, scale: float = 10.0) -> Orthographic:
-    return Orthographic((size, size), np.array([0.0, 0, 10]), orbit(0.0), scale)
+def from_above(size: int = 40, scale: float = 10.0) -> OrthographicView:
+    return OrthographicView((size, size), np.array([0.0, 0, 10]), view_axes(0.0), scale)
 
 
 @pytest.mark.parametrize("far", [0.0, 1e4])
 def test_buffers_hold_the_place_that_is_seen(far: float) -> None:
     mesh = square(1.5)
     mesh = Mesh(mesh.vertices + [far, 0, 0], mesh.triangles, mesh.uv, mesh.uv_triangles)
-    view = Perspective((30, 30), np.array([far, 0, 2.9]), orbit(0.0), 30.0)
-    buffers = geometry(mesh, view, samples=2)
+    view = PerspectiveView((30, 30), np.array([far, 0, 2.9]), view_axes(0.0), 30.0)
+    buffers = trace_geometry(mesh, view, samples=2)
     assert buffers.hit.shape == (60, 60) and buffers.hit.all()
     row, column = np.nonzero(buffers.hit)
     seen = view.project(buffers.position)
@@ -49,7 +49,7 @@ def test_buffers_hold_the_place_that_is_seen(far: float) -> None:
 
 def test_the_nearest_surface_hides_what_is_behind_it() -> None:
     mesh = joined(square(0.5, z=1.0), square(1.5))
-    buffers = geometry(mesh, from_above())
+    buffers = trace_geometry(mesh, from_above())
     height = np.full(buffers.hit.shape, np.nan)
     height[buffers.hit] = buffers.position[:, 2]
     assert np.allclose(height[15:25, 15:25], 1) and np.allclose(height[6:14, 6:34], 0)
@@ -59,23 +59,23 @@ def test_the_nearest_surface_hides_what_is_behind_it() -> None:
 def test_surfaces_seen_from_behind_turn_to_the_camera() -> None:
     mesh = square(1.5)
     turned = Mesh(mesh.vertices, mesh.triangles[:, ::-1])
-    buffers = geometry(turned, from_above())
+    buffers = trace_geometry(turned, from_above())
     assert np.allclose(buffers.normal, [0, 0, 1]) and (buffers.side == -1).all()
     assert (buffers.lit(np.array([0.0, 0, 1])) == 1).all()
 
 
 def test_a_sphere_shows_its_smooth_normals() -> None:
     ball = icosphere(subdivisions=4)
-    buffers = geometry(Mesh(np.array(ball.vertices), np.array(ball.faces)), from_above())
-    assert np.abs(buffers.normal - unit(buffers.position)).max() < 0.01
+    buffers = trace_geometry(Mesh(np.array(ball.vertices), np.array(ball.faces)), from_above())
+    assert np.abs(buffers.normal - normalise(buffers.position)).max() < 0.01
 
 
 def test_a_box_casts_its_shadow_where_geometry_says() -> None:
     cube = box(extents=(1, 1, 1))
     cube.apply_translation([0, 0, 0.5])
     scene = joined(square(3.0), Mesh(np.array(cube.vertices), np.array(cube.faces)))
-    buffers = geometry(scene, from_above(80, 13.3))
-    light = unit(np.array([1.0, 0.0, 1.0]))
+    buffers = trace_geometry(scene, from_above(80, 13.3))
+    light = normalise(np.array([1.0, 0.0, 1.0]))
     lit = buffers.lit(light)
     x, y, z = buffers.position.T
     # At 45 degrees a box of height one throws its shadow one unit to the other side.
@@ -87,10 +87,10 @@ def test_a_box_casts_its_shadow_where_geometry_says() -> None:
 
 def test_a_wide_light_throws_a_soft_shadow() -> None:
     blocker, ground = square(1.0, z=1.0), square(4.0)
-    view = Orthographic((20, 60), np.array([3.0, 0.0, 0.5]), orbit(0.0), 10.0)
-    buffers = geometry(joined(ground, blocker), view)
-    hard = buffers.lit(unit(np.array([-1.0, 0, 1])))
-    soft = buffers.lit(unit(np.array([-1.0, 0, 1])), angle=20.0, rays=64)
+    view = OrthographicView((20, 60), np.array([3.0, 0.0, 0.5]), view_axes(0.0), 10.0)
+    buffers = trace_geometry(joined(ground, blocker), view)
+    hard = buffers.lit(normalise(np.array([-1.0, 0, 1])))
+    soft = buffers.lit(normalise(np.array([-1.0, 0, 1])), angle=20.0, rays=64)
     x, y, _ = buffers.position.T
     # The blocker's edge at x = 1 throws to x = 2.
     assert (hard[x < 1.95] == 0).all() and (hard[x > 2.05] == 1).all()
@@ -102,8 +102,10 @@ def test_a_wide_light_throws_a_soft_shadow() -> None:
 
 def test_no_triangle_shades_itself_or_its_neighbours_on_a_coarse_ball() -> None:
     ball = icosphere(subdivisions=1)
-    buffers = geometry(Mesh(np.array(ball.vertices), np.array(ball.faces)), from_above(60, 25.0))
-    light = unit(np.array([1.0, 0.2, 0.3]))
+    buffers = trace_geometry(
+        Mesh(np.array(ball.vertices), np.array(ball.faces)), from_above(60, 25.0)
+    )
+    light = normalise(np.array([1.0, 0.2, 0.3]))
     assert (buffers.lit(light)[buffers.normal @ light > 0] == 1).all()
     assert (buffers.lit(light)[buffers.normal @ light < 0] == 0).all()
 

@@ -5,7 +5,7 @@ import pytest
 import torch
 
 from skinnet.errors import InputError
-from skinnet.mesh._orientation import face_components, inside_out
+from skinnet.mesh._orientation import is_inside_out, label_face_components
 from skinnet.mesh._topology import boundary_loops
 from skinnet.shape._default_model import MODES, default_model, procedural_model
 from skinnet.shape.landmarks import IBUG
@@ -31,11 +31,11 @@ def test_it_is_a_face_of_the_size_of_one() -> None:
 def test_it_is_one_disc_that_looks_outside() -> None:
     model = default_model()
     assert len(boundary_loops(model.triangles)) == 1
-    assert face_components(model.triangles).max() == 0
+    assert label_face_components(model.triangles).max() == 0
     assert len(np.unique(model.triangles)) == len(model.mean)
     edges = 3 * len(model.triangles) + len(boundary_loops(model.triangles)[0])
     assert len(model.mean) - edges / 2 + len(model.triangles) == 1
-    assert not inside_out(model.mean, model.triangles)
+    assert not is_inside_out(model.mean, model.triangles)
 
 
 def test_it_is_its_own_mirror_image_to_the_last_bit() -> None:

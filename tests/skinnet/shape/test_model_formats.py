@@ -13,7 +13,7 @@ from scipy.io import savemat
 from small_meshes import LANDMARKS, dome, small_model
 
 from skinnet.errors import InputError
-from skinnet.mesh._orientation import inside_out, turned
+from skinnet.mesh._orientation import flip_triangles, is_inside_out
 from skinnet.mesh.mesh import Mesh
 from skinnet.mesh.mesh_file import write_mesh
 from skinnet.shape._default_model import default_model
@@ -384,5 +384,5 @@ def test_ict_facekit_loads_as_the_face(shared_data: Path) -> None:
     at = {name: model.mean[vertex] for name, vertex in model.landmarks.items()}
     assert at["left_eye_outer"][0] > 0 > at["right_eye_outer"][0]
     assert at["nose_tip"][2] > at["chin"][2] and at["nose_bridge"][1] > at["chin"][1]
-    assert not inside_out(model.mean, model.triangles)
-    assert inside_out(model.mean, turned(model.triangles, np.ones(18460, bool)))
+    assert not is_inside_out(model.mean, model.triangles)
+    assert is_inside_out(model.mean, flip_triangles(model.triangles, np.ones(18460, bool)))

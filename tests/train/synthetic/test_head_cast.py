@@ -5,8 +5,8 @@ import pytest
 
 from skinnet.mesh.mesh import Mesh
 from skinnet.render.scene import Scene
-from skinnet.render.views import Orthographic
-from skinnet.render.visibility import geometry
+from skinnet.render.views import OrthographicView
+from skinnet.render.visibility import trace_geometry
 from train.synthetic.directions import DIRECTIONS, LOWEST
 from train.synthetic.head_cast import Buffers, buffers, cast
 from train.synthetic.heads import Head
@@ -17,12 +17,12 @@ SIZE = 40
 
 
 @pytest.fixture(scope="module")
-def view() -> Orthographic:
-    return Orthographic((SIZE, SIZE), np.array([0.0, 0, 20]), np.eye(3), 0.6 * SIZE / 2)
+def view() -> OrthographicView:
+    return OrthographicView((SIZE, SIZE), np.array([0.0, 0, 20]), np.eye(3), 0.6 * SIZE / 2)
 
 
 @pytest.fixture(scope="module")
-def front(head: Head, view: Orthographic) -> Buffers:
+def front(head: Head, view: OrthographicView) -> Buffers:
     return _seen(head, view)
 
 
@@ -45,9 +45,9 @@ def test_the_background_is_blank_and_open(front: Buffers) -> None:
     assert (front.seen[away] == ~np.uint64(0)).all()
 
 
-def test_seen_is_what_single_rays_find(head: Head, view: Orthographic, front: Buffers) -> None:
+def test_seen_is_what_single_rays_find(head: Head, view: OrthographicView, front: Buffers) -> None:
     scene = Scene(Mesh(head.vertices, head.triangles))
-    found = geometry(scene, view)
+    found = trace_geometry(scene, view)
     rows, columns = np.nonzero(found.hit)
     for pixel in range(0, len(rows), 61):
         seen = int(front.seen[rows[pixel], columns[pixel]])
@@ -59,7 +59,7 @@ def test_seen_is_what_single_rays_find(head: Head, view: Orthographic, front: Bu
             assert (seen >> k & 1) == (not scene.blocked(start, DIRECTIONS[k : k + 1])[0])
 
 
-def test_a_wall_hides_its_side_of_the_sky(view: Orthographic) -> None:
+def test_a_wall_hides_its_side_of_the_sky(view: OrthographicView) -> None:
     y, x = np.meshgrid(np.linspace(1, -1, 9), np.linspace(-1, 1, 9), indexing="ij")
     floor = np.stack([x, y, 0 * x], -1).reshape(-1, 3)
     wall = np.stack([0 * x + 0.55, 9 * y, 9 * (x + 1)], -1).reshape(-1, 3)
@@ -73,7 +73,9 @@ def test_a_wall_hides_its_side_of_the_sky(view: Orthographic) -> None:
     assert 110 < seen.openness[SIZE // 2, SIZE // 2 + 5] < 145
 
 
-def test_a_mirror_image_is_seen_mirrored(head: Head, view: Orthographic, front: Buffers) -> None:
+def test_a_mirror_image_is_seen_mirrored(
+    head: Head, view: OrthographicView, front: Buffers
+) -> None:
     image = _seen(mirrored(head), view)
     same = (image.label[:, ::-1] == front.label) & (front.label == SKIN)
     assert same.sum() > 0.95 * (front.label == SKIN).sum()
@@ -90,5 +92,5 @@ def test_casts_repeat_and_frame_the_head(head: Head) -> None:
     assert 0.15 < (one.label == SKIN).mean() < 0.6
 
 
-def _seen(head: Part, view: Orthographic) -> Buffers:
+def _seen(head: Part, view: OrthographicView) -> Buffers:
     return buffers(head, Scene(Mesh(head.vertices, head.triangles)), view)
