@@ -1,4 +1,4 @@
-"""Mesh files as trimesh reads them: parts, each with its own vertices and material."""
+"""The parts of a mesh file as trimesh reads them, each with its own vertices and material."""
 
 import warnings
 from pathlib import Path
@@ -16,33 +16,37 @@ from skinnet.files import BROKEN
 from skinnet.mesh._texture_file import Texture, decode_texture
 
 MESH_SUFFIXES = (".obj", ".ply", ".glb", ".gltf", ".stl")
-"""Suffixes of the mesh files that are read."""
+"""Suffixes of the mesh files that can be read."""
 
 
 class MeshGeometry(NamedTuple):
-    """A vertex for each pair of position and texture coordinates, and triangles."""
+    """Vertices, repeated where texture coordinates differ, and triangles."""
 
     vertices: Float[np.ndarray, "_ 3"]
     triangles: Int[np.ndarray, "_ 3"]
 
 
 class MeshPart(NamedTuple):
-    """One geometry of a file; `colour` is its material's, sRGB."""
+    """One part of a file: its geometry, texture coordinates, and the material's texture and colour.
 
-    corners: MeshGeometry
+    `uv` has a row per vertex. `colour` is sRGB.
+    """
+
+    geometry: MeshGeometry
     uv: Float[np.ndarray, "_ 2"] | None
-    picture: Texture | None
+    texture: Texture | None
     colour: UInt8[np.ndarray, "3"]
 
 
 def read_parts(path: Path) -> list[MeshPart]:
-    """The geometries with triangles of a file, in its frame.
+    """Read the parts of a file that have triangles, in the file's frame.
 
-    Raises `InputError` for a file that is missing, of another kind, damaged, or without triangles.
+    Raises:
+        InputError: For a file that is missing, of another kind, damaged, or without triangles.
     """
-    scene = _scene(path)
+    scene = _load_scene(path)
     try:
-        geometries = [_placed(scene, node) for node in scene.graph.nodes_geometry]
+        geometries = [_place(scene, node) for node in scene.graph.nodes_geometry]
     except BROKEN as error:
         raise _unreadable(path, error) from error
     solid = [each for each in geometries if isinstance(each, trimesh.Trimesh) and len(each.faces)]
@@ -51,18 +55,20 @@ def read_parts(path: Path) -> list[MeshPart]:
         raise InputError(
             f"{path} has no faces, only {points:,} points; export it as a triangle mesh."
         )
-    return [_part(path, each) for each in solid]
+    return [_convert_part(path, each) for each in solid]
 
 
-def concatenate(parts: list[MeshGeometry]) -> MeshGeometry:
-    """Parts one after the other."""
-    starts = np.cumsum([0] + [len(part.vertices) for part in parts[:-1]])
-    triangles = [part.triangles + start for part, start in zip(parts, starts, strict=True)]
-    return MeshGeometry(np.concatenate([p.vertices for p in parts]), np.concatenate(triangles))
+def concatenate(geometries: list[MeshGeometry]) -> MeshGeometry:
+    """Concatenate the vertices and triangles of several geometries."""
+    starts = np.cumsum([0] + [len(each.vertices) for each in geometries[:-1]])
+    triangles = [each.triangles + start for each, start in zip(geometries, starts, strict=True)]
+    return MeshGeometry(
+        np.concatenate([each.vertices for each in geometries]), np.concatenate(triangles)
+    )
 
 
 def read_obj_positions(path: Path) -> Float[np.ndarray, "vertices 3"]:
-    """The `v` lines of an OBJ file in its order; trimesh's is by material and seam."""
+    """Read the `v` lines of an OBJ file in their order; trimesh sorts them by material and seam."""
     with path.open("rb") as file:
         lines = [line for line in file if line.startswith((b"v ", b"v\t"))]
     if not lines:
@@ -74,12 +80,14 @@ def read_obj_positions(path: Path) -> Float[np.ndarray, "vertices 3"]:
     return positions
 
 
-def _scene(path: Path) -> Any:
+def _load_scene(path: Path) -> Any:
     kind = path.suffix.lower()
     if not path.is_file():
         raise InputError(f"There is no mesh {path}; check the path.")
     if kind not in MESH_SUFFIXES:
-        raise InputError(f"{path} is no mesh that is read; give one of {', '.join(SUFFIXES)}.")
+        raise InputError(
+            f"{path} is not a mesh file that can be read; give one of {', '.join(MESH_SUFFIXES)}."
+        )
     try:
         with warnings.catch_warnings():
             warnings.simplefilter("ignore")
@@ -88,7 +96,7 @@ def _scene(path: Path) -> Any:
         raise _unreadable(path, error) from error
 
 
-def _placed(scene: Any, node: str) -> Any:
+def _place(scene: Any, node: str) -> Any:
     transform, name = scene.graph[node]
     geometry = scene.geometry[name]
     if np.array_equal(transform, np.eye(4)):
@@ -96,27 +104,27 @@ def _placed(scene: Any, node: str) -> Any:
     return geometry.copy().apply_transform(transform)
 
 
-def _part(path: Path, geometry: Any) -> MeshPart:
-    corners = MeshGeometry(
+def _convert_part(path: Path, geometry: Any) -> MeshPart:
+    mesh = MeshGeometry(
         np.asarray(geometry.vertices, np.float64), np.asarray(geometry.faces, np.int64)
     )
-    low, high = corners.triangles.min(), corners.triangles.max()
-    if low < 0 or high >= len(corners.vertices):
+    low, high = mesh.triangles.min(), mesh.triangles.max()
+    if low < 0 or high >= len(mesh.vertices):
         raise InputError(
             f"{path} has a face with vertex {high if low >= 0 else low}, and "
-            f"{len(corners.vertices):,} vertices; it is damaged or cut short, export it again."
+            f"{len(mesh.vertices):,} vertices; it is damaged or cut short, export it again."
         )
     visual = geometry.visual
     if not isinstance(visual, TextureVisuals):
-        return MeshPart(corners, None, None, _rgb(visual.main_color))
-    known = visual.uv is not None and len(visual.uv) == len(corners.vertices)
+        return MeshPart(mesh, None, None, _rgb(visual.main_color))
+    known = visual.uv is not None and len(visual.uv) == len(mesh.vertices)
     uv = np.asarray(visual.uv, np.float64)[:, :2] if known else None
-    return MeshPart(corners, uv, _picture(path, visual.material), _rgb(visual.material.main_color))
+    return MeshPart(mesh, uv, _texture(path, visual.material), _rgb(visual.material.main_color))
 
 
-def _picture(path: Path, material: Any) -> Texture | None:
+def _texture(path: Path, material: Any) -> Texture | None:
     image = material.baseColorTexture if isinstance(material, PBRMaterial) else material.image
-    # trimesh makes a picture of four pixels for a material without one; it comes from no file.
+    # trimesh gives a material without a picture one of four pixels, which has no file format.
     if not isinstance(image, Image.Image) or image.format is None:
         return None
     return decode_texture(image, f"The texture of {path}")

@@ -1,4 +1,4 @@
-"""Vertices that files repeat along the seams of a texture, made one again."""
+"""Seams: vertices and texture coordinates that files repeat, merged."""
 
 import numpy as np
 from jaxtyping import Float, Int
@@ -6,33 +6,33 @@ from jaxtyping import Float, Int
 from skinnet.mesh._mesh_parts import MeshGeometry
 from skinnet.mesh._topology import weld
 
-Points = Float[np.ndarray, "points 2"]
-Numbers = Int[np.ndarray, "vertices"]
-Triangles = Int[np.ndarray, "triangles 3"]
+_Triangles = Int[np.ndarray, "triangles 3"]
 
 
-def merge_vertices(corners: MeshGeometry, listed: Float[np.ndarray, "listed 3"]) -> MeshGeometry:
-    """One vertex for each position that a triangle has, in the order of `listed`, then as before.
+def merge_vertices(geometry: MeshGeometry, listed: Float[np.ndarray, "listed 3"]) -> MeshGeometry:
+    """Merge vertices at the same position and drop those without a triangle.
 
-    `listed` may be empty.
+    The order is that of `listed` (which may be empty), then that of the geometry.
     """
-    every = np.concatenate([listed, corners.vertices])
-    used, place = np.unique(weld(every)[corners.triangles + len(listed)], return_inverse=True)
+    every = np.concatenate([listed, geometry.vertices])
+    used, place = np.unique(weld(every)[geometry.triangles + len(listed)], return_inverse=True)
     return MeshGeometry(every[used], place.reshape(-1, 3))
 
 
 def match_positions(
     listed: Float[np.ndarray, "listed 3"], vertices: Float[np.ndarray, "vertices 3"]
-) -> Numbers:
-    """For each vertex the first of `listed` at its position, if there is one."""
-    index: Numbers = weld(np.concatenate([listed, vertices]))[len(listed) :]
-    return index
+) -> Int[np.ndarray, "vertices"]:
+    """Find the first of `listed` at the position of each vertex.
+
+    A vertex without one gets a number from `len(listed)` on.
+    """
+    return np.asarray(weld(np.concatenate([listed, vertices]))[len(listed) :])
 
 
 def merge_coordinates(
-    triangles: Triangles, uv: Points, uv_triangles: Triangles
-) -> tuple[Float[np.ndarray, "shared 2"], Triangles]:
-    """Texture coordinates one for each vertex, and more only where its triangles differ."""
+    triangles: _Triangles, uv: Float[np.ndarray, "points 2"], uv_triangles: _Triangles
+) -> tuple[Float[np.ndarray, "merged 2"], _Triangles]:
+    """Merge equal texture coordinates of the same vertex."""
     corner = uv_triangles.ravel()
     rows = np.column_stack([triangles.ravel(), uv[corner]])
     first, place = np.unique(weld(rows), return_inverse=True)

@@ -1,62 +1,58 @@
-"""The textures of a mesh's parts in one picture."""
+"""The textures of a mesh's parts, packed into one picture."""
 
 from typing import NamedTuple
 
 import numpy as np
-from jaxtyping import Float, Int, UInt8
+from jaxtyping import Float, Int
+
+from skinnet.mesh._mesh_parts import MeshPart
+from skinnet.mesh._texture_file import Texture
 
 # Parts of one list have different sizes.
-Picture = UInt8[np.ndarray, "_ _ 3"]
-Points = Float[np.ndarray, "_ 2"]
-Triangles = Int[np.ndarray, "_ 3"]
+_Coordinates = Float[np.ndarray, "_ 2"]
+_Triangles = Int[np.ndarray, "_ 3"]
 
 PATCH = 4
-"""Side in texels of the patch that stands for a part of one colour."""
-
-
-class Page(NamedTuple):
-    """A part's triangles into its texture coordinates, and its picture; its colour without them."""
-
-    triangles: Triangles
-    uv: Points | None
-    picture: Picture | None
-    colour: UInt8[np.ndarray, "3"]
-
-
-class AtlasTile(NamedTuple):
-    """Triangles into texture coordinates in a picture."""
-
-    triangles: Triangles
-    uv: Points
-    picture: Picture
+"""Side in texels of the patch that holds the colour of a part without a texture."""
 
 
 class Atlas(NamedTuple):
-    """All parts, one after the other, in one texture space."""
+    """The triangles of all parts in one texture space, and its picture if it has one."""
 
-    triangles: Triangles
-    uv: Points
-    picture: Picture | None
+    triangles: _Triangles
+    uv: _Coordinates
+    texture: Texture | None
 
 
-def pack_atlas(pages: list[Page]) -> Atlas | None:
-    """The parts in one texture space; None if some have no coordinates and none has a picture.
+class _Tile(NamedTuple):
+    """Triangles of one part in a picture of its own."""
 
-    Parts that all have the same picture, or none, keep their coordinates. Otherwise the pictures
-    are laid side by side, coordinates outside [0, 1] wrapped first.
+    triangles: _Triangles
+    uv: _Coordinates
+    texture: Texture
+
+
+def pack_atlas(parts: list[MeshPart]) -> Atlas | None:
+    """Pack the parts into one texture space.
+
+    Parts that all have the same picture, or none, keep their coordinates. Otherwise coordinates
+    outside [0, 1] are wrapped and the pictures are placed side by side.
+
+    Returns:
+        The atlas; None if a part has no coordinates and no part has a picture.
     """
-    mapped = [(page.triangles, page.uv) for page in pages if page.uv is not None]
-    pictures = [page.picture for page in pages if page.uv is not None and page.picture is not None]
-    if not pictures:
-        return _listed(mapped, None) if len(mapped) == len(pages) else None
-    one = all(np.array_equal(picture, pictures[0]) for picture in pictures)
-    if one and len(pictures) == len(pages):
-        return _listed(mapped, pictures[0])
-    return _side_by_side([_sheet(page) for page in pages])
+    mapped = [(part.geometry.triangles, part.uv) for part in parts if part.uv is not None]
+    textures = [part.texture for part in parts if part.uv is not None and part.texture is not None]
+    if not textures:
+        return _concatenate(mapped, None) if len(mapped) == len(parts) else None
+    same = all(np.array_equal(texture, textures[0]) for texture in textures)
+    if same and len(textures) == len(parts):
+        return _concatenate(mapped, textures[0])
+    return _place_side_by_side([_make_tile(part) for part in parts])
 
 
-def wrap_coordinates(uv: Points, triangles: Triangles) -> tuple[Points, Triangles]:
-    """Triangles in other tiles of the plane moved onto [0, 1]^2; what still juts out is cut off."""
+def wrap_coordinates(uv: _Coordinates, triangles: _Triangles) -> tuple[_Coordinates, _Triangles]:
+    """Shift triangles outside [0, 1]^2 by whole tiles onto it, and clip what still sticks out."""
     corners = uv[triangles]
     inside = ((corners >= 0) & (corners <= 1)).all((1, 2))[:, None, None]
     tiles = np.where(inside, 0, np.floor(corners.mean(1, keepdims=True)))
@@ -67,33 +63,34 @@ def wrap_coordinates(uv: Points, triangles: Triangles) -> tuple[Points, Triangle
     return np.clip(wrapped, 0, 1), place.reshape(-1, 3)
 
 
-def _sheet(page: Page) -> AtlasTile:
-    """A part with its picture, or with a patch of its colour."""
-    if page.uv is not None and page.picture is not None:
-        uv, triangles = wrap_coordinates(page.uv, page.triangles)
-        return AtlasTile(triangles, uv, page.picture)
-    patch = np.tile(page.colour, (PATCH, PATCH, 1))
-    return AtlasTile(np.zeros_like(page.triangles), np.full((1, 2), 0.5), patch)
+def _make_tile(part: MeshPart) -> _Tile:
+    """Make a tile of the part's picture, or of a patch of its colour."""
+    triangles = part.geometry.triangles
+    if part.uv is not None and part.texture is not None:
+        uv, triangles = wrap_coordinates(part.uv, triangles)
+        return _Tile(triangles, uv, part.texture)
+    patch = np.tile(part.colour, (PATCH, PATCH, 1))
+    return _Tile(np.zeros_like(triangles), np.full((1, 2), 0.5), patch)
 
 
-def _side_by_side(sheets: list[AtlasTile]) -> Atlas:
-    distinct: list[Picture] = []
-    for sheet in sheets:
-        if not any(np.array_equal(sheet.picture, other) for other in distinct):
-            distinct.append(sheet.picture)
-    height = max(len(picture) for picture in distinct)
+def _place_side_by_side(tiles: list[_Tile]) -> Atlas:
+    distinct: list[Texture] = []
+    for tile in tiles:
+        if not any(np.array_equal(tile.texture, other) for other in distinct):
+            distinct.append(tile.texture)
+    height = max(len(texture) for texture in distinct)
     padded = [np.pad(each, ((0, height - len(each)), (0, 0), (0, 0))) for each in distinct]
-    left = np.cumsum([0] + [picture.shape[1] for picture in distinct])
-    moved = []
-    for triangles, uv, picture in sheets:
-        number = next(i for i, other in enumerate(distinct) if np.array_equal(picture, other))
-        u = (left[number] + uv[:, 0] * picture.shape[1]) / left[-1]
-        v = 1 - (1 - uv[:, 1]) * len(picture) / height
-        moved.append((triangles, np.stack([u, v], 1)))
-    return _listed(moved, np.concatenate(padded, 1))
+    left = np.cumsum([0] + [texture.shape[1] for texture in distinct])
+    placed = []
+    for triangles, uv, texture in tiles:
+        number = next(i for i, other in enumerate(distinct) if np.array_equal(texture, other))
+        u = (left[number] + uv[:, 0] * texture.shape[1]) / left[-1]
+        v = 1 - (1 - uv[:, 1]) * len(texture) / height
+        placed.append((triangles, np.stack([u, v], 1)))
+    return _concatenate(placed, np.concatenate(padded, 1))
 
 
-def _listed(mapped: list[tuple[Triangles, Points]], picture: Picture | None) -> Atlas:
+def _concatenate(mapped: list[tuple[_Triangles, _Coordinates]], texture: Texture | None) -> Atlas:
     starts = np.cumsum([0] + [len(uv) for _, uv in mapped[:-1]])
-    moved = [part + start for (part, _), start in zip(mapped, starts, strict=True)]
-    return Atlas(np.concatenate(moved), np.concatenate([uv for _, uv in mapped]), picture)
+    shifted = [part + start for (part, _), start in zip(mapped, starts, strict=True)]
+    return Atlas(np.concatenate(shifted), np.concatenate([uv for _, uv in mapped]), texture)

@@ -1,4 +1,4 @@
-"""The picture that colours a mesh, its rows as they lie in the file."""
+"""Texture files: pictures for meshes, read without applying an EXIF orientation."""
 
 import warnings
 from pathlib import Path
@@ -16,11 +16,13 @@ Texture = UInt8[np.ndarray, "_ _ 3"]
 
 
 def read_texture(path: Path) -> Texture:
-    """A picture as uint8 sRGB, as it lies in the file.
+    """Read a picture as uint8 sRGB, its rows and columns as stored in the file.
 
-    Texture coordinates refer to the rows and columns that are stored, so an EXIF orientation is not
-    applied, as it is to a photograph; colour profiles are, and transparency is laid on white.
-    Raises `InputError` if the picture is missing, damaged, or larger than `MAX_PIXELS`.
+    Texture coordinates refer to these, so an EXIF orientation is not applied. Colour profiles are,
+    and transparency is composited on white.
+
+    Raises:
+        InputError: If the picture is missing, damaged, or larger than `MAX_PIXELS`.
     """
     Image.init()
     try:
@@ -36,7 +38,7 @@ def read_texture(path: Path) -> Texture:
 
 
 def decode_texture(image: Image.Image, name: str) -> Texture:
-    """An open image as uint8 sRGB; `name` stands for it in errors."""
+    """Decode an open image as uint8 sRGB; errors call it `name`."""
     width, height = image.size
     if width * height > MAX_PIXELS:
         raise InputError(
@@ -53,8 +55,8 @@ def decode_texture(image: Image.Image, name: str) -> Texture:
         raise InputError(f"{name} is damaged or cut short ({error}); copy it again.") from error
 
 
-def picture_beside(path: Path) -> Path | None:
-    """The picture in a mesh's folder that bears its name, else the only one there, else None."""
+def find_texture_beside(path: Path) -> Path | None:
+    """Find the picture with the mesh's name in its folder, else the only picture there."""
     pictures = sorted(p for p in path.absolute().parent.iterdir() if p.suffix.lower() in SUFFIXES)
     named = [picture for picture in pictures if picture.stem == path.stem]
     if len(named) == 1:

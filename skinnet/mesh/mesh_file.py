@@ -1,4 +1,4 @@
-"""Meshes read from and written to files."""
+"""Mesh files: OBJ, PLY, glTF and STL are read, OBJ and PLY are written."""
 
 from pathlib import Path
 
@@ -9,47 +9,84 @@ from skinnet.errors import InputError
 from skinnet.files import written_together
 from skinnet.mesh._mesh_parts import MeshPart, concatenate, read_obj_positions, read_parts
 from skinnet.mesh._seams import merge_coordinates, merge_vertices
-from skinnet.mesh._texture_atlas import Page, pack_atlas
-from skinnet.mesh._texture_file import Texture, picture_beside, read_texture
+from skinnet.mesh._texture_atlas import pack_atlas
+from skinnet.mesh._texture_file import find_texture_beside, read_texture
 from skinnet.mesh.mesh import Mesh
 
 
 def read_mesh(path: Path, texture: Path | None = None) -> Mesh:
-    """A mesh from an OBJ, PLY, glTF, GLB or STL file, its parts joined.
+    r"""Read a mesh from an OBJ, PLY, glTF, GLB or STL file and join its parts.
 
-    Vertices at exactly the same position become one, in the order of the file (numbers of vertices
-    count these), and those without a triangle are left out; a vertex on a seam keeps its several
-    texture coordinates. The texture is `texture`, or what the materials name, or the picture in the
-    mesh's folder that bears its name, or the only one there; pixels stay as they lie in the file
-    (`read_texture`). Pictures of several parts are laid side by side, and a part without one gets
-    its material's colour.
+    Vertices at exactly the same position are merged, and those without a triangle are dropped; the
+    order is that of the file. A vertex on a seam keeps its several texture coordinates.
 
-    Raises `InputError` for a file that is missing, of another kind, damaged, or without triangles.
+    The texture is `texture`, else what the materials name, else the picture in the mesh's folder
+    with the same name, else the only picture there. An EXIF orientation is not applied, since
+    texture coordinates refer to the stored rows and columns. If parts have different pictures,
+    these are placed side by side; a part without one gets its material's colour.
+
+    Args:
+        path: The mesh file.
+        texture: A picture to use in place of the materials'.
+
+    Returns:
+        The mesh, named after the file.
+
+    Raises:
+        InputError: For a file that is missing, of another kind, damaged, or without triangles.
+
+    Example:
+        >>> from pathlib import Path
+        >>> from tempfile import TemporaryDirectory
+        >>> with TemporaryDirectory() as folder:
+        ...     path = Path(folder) / "triangle.obj"
+        ...     _ = path.write_text("v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n")
+        ...     read_mesh(path).triangles
+        array([[0, 1, 2]])
     """
     path = Path(path)
     parts = read_parts(path)
     listed = read_obj_positions(path) if path.suffix.lower() == ".obj" else np.zeros((0, 3))
-    vertices, triangles = merge_vertices(concatenate([part.corners for part in parts]), listed)
-    atlas = pack_atlas(_pages(parts, texture, picture_beside(path)))
+    vertices, triangles = merge_vertices(concatenate([part.geometry for part in parts]), listed)
+    atlas = pack_atlas(_choose_textures(parts, texture, find_texture_beside(path)))
     if atlas is None:
         return Mesh(vertices, triangles, name=str(path))
     uv, uv_triangles = merge_coordinates(triangles, atlas.uv, atlas.triangles)
-    return Mesh(vertices, triangles, uv, uv_triangles, atlas.picture, str(path))
+    return Mesh(vertices, triangles, uv, uv_triangles, atlas.texture, str(path))
 
 
 def write_mesh(path: Path, mesh: Mesh) -> None:
-    """Write a mesh as OBJ, with an MTL and a PNG beside it where it has a texture, or as PLY.
+    """Write a mesh as OBJ or PLY, with its texture as a PNG beside it.
 
-    The files appear together or not at all. Raises `InputError` for another suffix.
+    The files (an OBJ has an MTL too) appear together or not at all.
+
+    Args:
+        path: The file, with suffix .obj or .ply.
+        mesh: What is written.
+
+    Raises:
+        InputError: For another suffix, or if a file cannot be written.
+
+    Example:
+        >>> import numpy as np
+        >>> from pathlib import Path
+        >>> from tempfile import TemporaryDirectory
+        >>> with TemporaryDirectory() as folder:
+        ...     write_mesh(Path(folder) / "a.obj", Mesh(np.eye(3), np.array([[0, 1, 2]])))
+        ...     print((Path(folder) / "a.obj").read_text())
+        v 1 0 0
+        v 0 1 0
+        v 0 0 1
+        f 1 2 3
+        <BLANKLINE>
     """
     path = Path(path)
-    writers = {".obj": _obj, ".ply": _ply}
+    writers = {".obj": _format_obj, ".ply": _format_ply}
     if path.suffix.lower() not in writers:
         raise InputError(f"Meshes are written as .obj or .ply; got {path}.")
     picture = path.with_suffix(".png")
     with written_together() as beside:
-        lines = writers[path.suffix.lower()](path, mesh)
-        beside(path).write_bytes(lines)
+        beside(path).write_bytes(writers[path.suffix.lower()](path, mesh))
         if mesh.texture is not None and mesh.uv is not None:
             Image.fromarray(mesh.texture).save(beside(picture), "PNG")
             if path.suffix.lower() == ".obj":
@@ -57,20 +94,19 @@ def write_mesh(path: Path, mesh: Mesh) -> None:
                 beside(path.with_suffix(".mtl")).write_text(material, encoding="utf-8")
 
 
-def _pages(parts: list[MeshPart], given: Path | None, beside: Path | None) -> list[Page]:
-    pictures: list[Texture | None] = [part.picture for part in parts]
-    missing = all(picture is None for picture in pictures)
-    if given is not None:
-        pictures = [read_texture(Path(given))] * len(parts)
-    elif missing and beside is not None and any(part.uv is not None for part in parts):
-        pictures = [read_texture(beside)] * len(parts)
-    return [
-        Page(part.corners.triangles, part.uv, picture, part.colour)
-        for part, picture in zip(parts, pictures, strict=True)
-    ]
+def _choose_textures(
+    parts: list[MeshPart], given: Path | None, beside: Path | None
+) -> list[MeshPart]:
+    if given is None:
+        untextured = all(part.texture is None for part in parts)
+        given = beside if untextured and any(part.uv is not None for part in parts) else None
+    if given is None:
+        return parts
+    texture = read_texture(Path(given))
+    return [part._replace(texture=texture) for part in parts]
 
 
-def _obj(path: Path, mesh: Mesh) -> bytes:
+def _format_obj(path: Path, mesh: Mesh) -> bytes:
     lines = [f"v {x:.9g} {y:.9g} {z:.9g}" for x, y, z in mesh.vertices.tolist()]
     corners = (mesh.triangles + 1).tolist()
     if mesh.uv is None or mesh.uv_triangles is None:
@@ -84,8 +120,8 @@ def _obj(path: Path, mesh: Mesh) -> bytes:
     return ("\n".join(lines) + "\n").encode()
 
 
-def _ply(path: Path, mesh: Mesh) -> bytes:
-    """Binary, with the texture coordinates of each face's corners as MeshLab writes them."""
+def _format_ply(path: Path, mesh: Mesh) -> bytes:
+    """Format as binary PLY, with the texture coordinates of face corners as MeshLab has them."""
     face: list[tuple[str, str, tuple[int, ...]]]
     face = [("count", "u1", ()), ("corners", "<i4", (3,))]
     textured = mesh.texture is not None and mesh.uv is not None

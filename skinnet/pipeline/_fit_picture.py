@@ -5,8 +5,8 @@ from jaxtyping import Float, UInt8
 
 from skinnet.inference.panel import TILE, mapped, picture, sheet
 from skinnet.mesh.mesh import Mesh
-from skinnet.render._shading import render
 from skinnet.render.lights import DirectionalLight, SphericalHarmonics
+from skinnet.render.rendering import render
 from skinnet.render.views import PerspectiveView, frame_face
 from skinnet.render.visibility import trace_geometry
 from skinnet.shape.registration import Registration

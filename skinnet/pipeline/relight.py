@@ -8,8 +8,8 @@ from jaxtyping import Float32, UInt8
 
 from skinnet.errors import InputError
 from skinnet.mesh.mesh import Mesh
-from skinnet.render._shading import SKIN_SPECULAR, render
 from skinnet.render.lights import DirectionalLight, Light, SphericalHarmonics
+from skinnet.render.rendering import SKIN_SPECULAR, render
 from skinnet.render.views import frame_face
 
 Direction = tuple[float, float, float]

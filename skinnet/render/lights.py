@@ -1,48 +1,66 @@
-"""Lights, and what of them reaches a surface.
+"""Lights, and the irradiance that they give a surface.
 
-Light is counted as the radiance that a white diffuse surface sends out under it, its irradiance
-over pi, so that an albedo times it is what the camera sees.
+Irradiance is divided by pi: it is then the radiance of a white diffuse surface, and the radiance of
+any diffuse surface is its albedo times that.
 """
 
 from collections.abc import Callable
 from dataclasses import dataclass
-from typing import NamedTuple, Protocol, runtime_checkable
+from typing import Protocol, runtime_checkable
 
 import numpy as np
 from jaxtyping import Float
 
 from skinnet.errors import InputError
-from skinnet.mesh.normals import normalise
+from skinnet.mesh._vectors import normalise
+from skinnet.render._harmonics import COSINE_LOBE, evaluate_harmonics
 from skinnet.render.visibility import GeometryBuffers
 
-CONVOLUTION = np.repeat([1, 2 / 3, 1 / 4], [1, 3, 5])
-"""A_l / pi, the clamped cosine in spherical harmonics of degree 0, 1 and 2 (Ramamoorthi &
-Hanrahan 2001, equation 8), for each of the nine."""
-
-
-class Arrival(NamedTuple):
-    """Irradiance over pi at each hit, and the direction it comes from if it is one."""
-
-    irradiance: Float[np.ndarray, "hits 3"]
-    direction: Float[np.ndarray, "3"] | None
+_Illumination = tuple[Float[np.ndarray, "hits 3"], Float[np.ndarray, "3"] | None]
+"""Irradiance over pi at each hit, and the unit vector to the light if it comes from one."""
 
 
 @runtime_checkable
 class Light(Protocol):
-    """Something that lights a surface."""
+    """A light that can be given to `render`."""
 
-    def arrive(self, buffers: GeometryBuffers, shadows: bool) -> Arrival:
-        """What reaches each hit, less what the mesh itself hides if `shadows`."""
+    def illuminate(self, buffers: GeometryBuffers, shadows: bool) -> _Illumination:
+        """Compute the irradiance over pi at each hit.
+
+        Args:
+            buffers: The surface.
+            shadows: Whether the mesh occludes the light.
+
+        Returns:
+            Irradiance over pi, linear sRGB, and the unit vector to the light; None in place of the
+            vector for light from all around.
+        """
         ...
 
 
 @dataclass(frozen=True)
 class DirectionalLight:
-    """A distant light. `direction` points to it, of any length.
+    """A distant light.
 
-    `colour`, one number or three, is the radiance of a white diffuse surface that faces it: its
-    irradiance is pi times that. `angle`, its width in degrees, makes shadows soft over `rays` rays
-    a pixel.
+    Args:
+        direction: Vector to the light, of any length.
+        colour: Radiance of a white diffuse surface that faces the light, one number or linear sRGB.
+        angle: Degrees that the light is across; above 0 shadows are soft.
+        rays: Shadow rays per pixel for a soft shadow.
+
+    Raises:
+        InputError: When it is used, if `direction` has no length or is not finite.
+
+    Example:
+        >>> import numpy as np
+        >>> from skinnet.mesh import Mesh
+        >>> from skinnet.render import frame_face, trace_geometry
+        >>> square = np.array([[-1.0, -1, 0], [1, -1, 0], [1, 1, 0], [-1, 1, 0]])
+        >>> mesh = Mesh(square, np.array([[0, 1, 2], [0, 2, 3]]))
+        >>> buffers = trace_geometry(mesh, frame_face(square, (8, 8)))
+        >>> irradiance, direction = DirectionalLight((0, 3, 4), 0.5).illuminate(buffers, True)
+        >>> irradiance[0].round(3), direction
+        (array([0.4, 0.4, 0.4]), array([0. , 0.6, 0.8]))
     """
 
     direction: tuple[float, float, float] | Float[np.ndarray, "3"]
@@ -50,27 +68,42 @@ class DirectionalLight:
     angle: float = 0.0
     rays: int = 32
 
-    def arrive(self, buffers: GeometryBuffers, shadows: bool) -> Arrival:
-        """colour max(n . l, 0), times the share of the light that is seen."""
+    def illuminate(self, buffers: GeometryBuffers, shadows: bool) -> _Illumination:
+        """Compute colour max(n . l, 0), times the visible share of the light with `shadows`."""
         direction = np.asarray(self.direction, np.float64)
         if not (np.isfinite(direction).all() and direction.any()):
-            raise InputError(f"A light's direction has a length; got {self.direction}.")
+            raise InputError(
+                f"The direction of a light is a vector with a length; got {self.direction}."
+            )
         direction = normalise(direction)
         cosine = (buffers.normal @ direction).clip(0)
         if shadows:
-            cosine = cosine * buffers.lit(direction, self.angle, self.rays)
+            cosine = cosine * buffers.light_visibility(direction, self.angle, self.rays)
         colour = np.broadcast_to(np.asarray(self.colour, np.float64), 3)
-        return Arrival(cosine[:, None] * colour, direction)
+        return cosine[:, None] * colour, direction
 
 
 @dataclass(frozen=True)
 class SphericalHarmonics:
-    """Light from all around: nine coefficients of its radiance, grey [9] or in colour [9, 3].
+    """Light from all around, as spherical harmonics of its radiance up to degree 2.
 
-    Real orthonormal harmonics of the direction (x, y, z) it comes from, in the order of degree and
-    order (0, 0), (1, -1), (1, 0), (1, 1), (2, -2) ... (2, 2); a constant radiance L has the first
-    coefficient sqrt(4 pi) L. In place of shadows it is dimmed by the share of the sky that a vertex
-    sees.
+    The harmonics are real and orthonormal, of the direction (x, y, z) that the light comes from, in
+    the order (0, 0), (1, -1), (1, 0), (1, 1), (2, -2) ... (2, 2) of degree and order. It casts no
+    shadows; instead it is multiplied by the sky visibility.
+
+    Args:
+        coefficients: Nine, grey [9] or linear sRGB [9, 3]. A constant radiance L has the first
+            coefficient sqrt(4 pi) L and eight zeros.
+
+    Source:
+        Ramamoorthi & Hanrahan 2001, "An efficient representation for irradiance environment maps".
+
+    Example:
+        >>> import numpy as np
+        >>> sky = SphericalHarmonics.sky((1.0, 1.0, 1.0), (0.0, 0.0, 0.0))
+        >>> sky.irradiance(np.array([[0.0, 1, 0], [1, 0, 0]])).round(3)
+        array([[0.833, 0.833, 0.833],
+               [0.5  , 0.5  , 0.5  ]])
     """
 
     coefficients: Float[np.ndarray, "9"] | Float[np.ndarray, "9 3"]
@@ -79,12 +112,12 @@ class SphericalHarmonics:
     def project(
         cls, radiance: Callable[[Float[np.ndarray, "points 3"]], Float[np.ndarray, "points 3"]]
     ) -> "SphericalHarmonics":
-        """The nine coefficients of any radiance [.., 3] given over unit directions [.., 3]."""
+        """Project any radiance, a function of unit directions, onto the nine harmonics."""
         height, weight = np.polynomial.legendre.leggauss(64)
         angle = np.arange(128) * (2 * np.pi / 128)
-        y, turn = np.repeat(height, 128), np.tile(angle, 64)
+        y, azimuth = np.repeat(height, 128), np.tile(angle, 64)
         ring = np.sqrt(1 - y * y)
-        directions = np.stack([ring * np.sin(turn), y, ring * np.cos(turn)], 1)
+        directions = np.stack([ring * np.sin(azimuth), y, ring * np.cos(azimuth)], 1)
         area = np.repeat(weight, 128) * (2 * np.pi / 128)
         return cls((evaluate_harmonics(directions) * area[:, None]).T @ radiance(directions))
 
@@ -92,7 +125,7 @@ class SphericalHarmonics:
     def sky(
         cls, above: tuple[float, float, float], below: tuple[float, float, float]
     ) -> "SphericalHarmonics":
-        """Radiance that goes evenly from `below`, straight down, to `above`."""
+        """Make a sky whose radiance changes linearly with height, from `below` to `above`."""
         top, bottom = np.array(above, np.float64), np.array(below, np.float64)
         coefficients = np.zeros((9, 3))
         coefficients[0] = np.sqrt(4 * np.pi) * (top + bottom) / 2
@@ -100,31 +133,18 @@ class SphericalHarmonics:
         return cls(coefficients)
 
     def irradiance(self, normals: Float[np.ndarray, "points 3"]) -> Float[np.ndarray, "points 3"]:
-        """Irradiance over pi of surfaces with these unit normals; never below 0, where nine
-        coefficients can take it."""
+        """Compute the irradiance over pi of surfaces with these unit normals.
+
+        Nine coefficients can describe a light whose irradiance is negative somewhere; it is clipped
+        to 0 there.
+        """
         coefficients = np.broadcast_to(self.coefficients.reshape(9, -1), (9, 3))
-        folded: Float[np.ndarray, "points 3"] = (
-            evaluate_harmonics(normals) * CONVOLUTION @ coefficients
+        convolved: Float[np.ndarray, "points 3"] = (
+            evaluate_harmonics(normals) * COSINE_LOBE @ coefficients
         )
-        return folded.clip(0)
+        return convolved.clip(0)
 
-    def arrive(self, buffers: GeometryBuffers, shadows: bool) -> Arrival:
-        """The irradiance, times the share of the sky that is seen."""
+    def illuminate(self, buffers: GeometryBuffers, shadows: bool) -> _Illumination:
+        """Compute the irradiance over pi, times the sky visibility with `shadows`."""
         irradiance = self.irradiance(buffers.normal)
-        return Arrival(irradiance * buffers.openness()[:, None] if shadows else irradiance, None)
-
-
-def evaluate_harmonics(directions: Float[np.ndarray, "points 3"]) -> Float[np.ndarray, "points 9"]:
-    """The nine real spherical harmonics up to degree 2 of unit directions."""
-    x, y, z = directions.T
-    one = np.sqrt(3 / (4 * np.pi))
-    two = np.sqrt(15 / (4 * np.pi))
-    return np.stack(
-        [
-            np.full_like(x, np.sqrt(1 / (4 * np.pi))),
-            *(one * y, one * z, one * x),
-            *(two * x * y, two * y * z, np.sqrt(5 / (16 * np.pi)) * (3 * z * z - 1)),
-            *(two * x * z, two / 2 * (x * x - y * y)),
-        ],
-        1,
-    )
+        return irradiance * buffers.sky_visibility()[:, None] if shadows else irradiance, None

@@ -1,7 +1,6 @@
-"""A mesh that rays are cast at."""
+"""Ray casting against a mesh with Embree."""
 
 from functools import cached_property
-from typing import NamedTuple
 
 import numpy as np
 from embreex.mesh_construction import TriangleMesh
@@ -10,120 +9,132 @@ from jaxtyping import Bool, Float, Int
 
 from skinnet.errors import InputError
 from skinnet.mesh.mesh import Mesh
-from skinnet.mesh.normals import compute_vertex_normals, normalise
+from skinnet.mesh.normals import compute_vertex_normals
+from skinnet.render._ray_samples import build_tangents, rotate, sample_disc
 
 BIAS = 1e-4
 """Distance from the surface at which shadow rays start, as a share of the mesh's extent."""
 
-SKY_RAYS = 128
-"""Rays a vertex by which it is found how much of the sky it sees."""
+_SKY_RAYS = 128
+"""Rays per vertex that sample the sky."""
 
-
-class Hits(NamedTuple):
-    """The first triangle on each ray, -1 for none, and where in it."""
-
-    triangle: Int[np.ndarray, "rays"]
-    barycentric: Float[np.ndarray, "rays 3"]
+_Hits = tuple[Int[np.ndarray, "rays"], Float[np.ndarray, "rays 3"]]
+"""The first triangle on each ray, -1 for none, and the barycentric coordinates of the hit."""
 
 
 class Scene:
-    """A mesh that rays can be cast at, by Embree in single precision around its middle."""
+    """A mesh prepared for ray casting; share one between several views of the same mesh.
+
+    Embree works in single precision, so positions are centred and scaled before they reach it.
+
+    Args:
+        mesh: The surface, seen from either side.
+
+    Attributes:
+        mesh: The surface.
+        normals: Unit normals of its vertices.
+        extent: Longest side of its bounding box.
+
+    Raises:
+        InputError: For a mesh without triangles, or with vertices that are not finite.
+
+    Example:
+        >>> import numpy as np
+        >>> from skinnet.mesh import Mesh
+        >>> scene = Scene(Mesh(np.eye(3), np.array([[0, 1, 2]])))
+        >>> triangle, barycentric = scene.intersect(np.zeros((1, 3)), np.ones((1, 3)))
+        >>> triangle, barycentric.round(3)
+        (array([0]), array([[0.333, 0.333, 0.333]]))
+    """
 
     def __init__(self, mesh: Mesh):
         if len(mesh.triangles) == 0 or not np.isfinite(mesh.vertices).all():
-            raise InputError(f"{mesh.name} has no triangles or vertices that are not finite.")
+            raise InputError(f"{mesh.name} has no triangles, or vertices that are not finite.")
         self.mesh = mesh
         self.normals = compute_vertex_normals(mesh.vertices, mesh.triangles)
         low, high = mesh.vertices.min(0), mesh.vertices.max(0)
         self.middle, self.extent = (low + high) / 2, float((high - low).max())
         self._embree = EmbreeScene(robust=True)
-        TriangleMesh(self._embree, self.local(mesh.vertices), mesh.triangles.astype(np.int32))
+        TriangleMesh(self._embree, self.to_local(mesh.vertices), mesh.triangles.astype(np.int32))
 
-    def first(
+    def intersect(
         self, origins: Float[np.ndarray, "rays 3"], directions: Float[np.ndarray, "rays 3"]
-    ) -> Hits:
-        """What each ray hits first, from either side."""
-        found = self._embree.run(self.local(origins), directions.astype(np.float32))
+    ) -> _Hits:
+        """Find the first triangle that each ray hits, from either side.
+
+        Args:
+            origins: Start of each ray, in the mesh's unit.
+            directions: Direction of each ray, of any length.
+
+        Returns:
+            Index of the triangle, -1 for a miss, and the barycentric coordinates of the hit.
+        """
+        found = self._embree.run(self.to_local(origins), directions.astype(np.float32))
         triangle = np.asarray(found, np.int64)
         barycentric = np.zeros((len(triangle), 3))
         hit = triangle >= 0
         corners = self.mesh.vertices[self.mesh.triangles[triangle[hit]]]
-        barycentric[hit] = _crossing(corners, origins[hit], directions[hit])
-        return Hits(triangle, barycentric)
+        barycentric[hit] = _intersect_triangles(corners, origins[hit], directions[hit])
+        return triangle, barycentric
 
-    def blocked(
+    def occluded(
         self, starts: Float[np.ndarray, "rays 3"], directions: Float[np.ndarray, "#rays 3"]
     ) -> Bool[np.ndarray, "rays"]:
-        """Whether each ray from `starts`, which are `local`, or one for all, hits anything."""
+        """Tell whether each ray hits anything.
+
+        Args:
+            starts: Start of each ray in Embree's frame (`to_local`).
+            directions: Direction of each ray, or one for all.
+
+        Returns:
+            True where a ray hits the mesh.
+        """
         towards = np.ascontiguousarray(directions, np.float32)
         found = self._embree.run(starts, towards, query="OCCLUDED")
         return np.asarray(found != -1)
 
     @cached_property
-    def outer_openness(self) -> Float[np.ndarray, "vertices"]:
-        """Share of the sky's cosine-weighted light that reaches each vertex from outside."""
-        return self._openness(self.normals)
+    def outer_sky_visibility(self) -> Float[np.ndarray, "vertices"]:
+        """Share of the cosine-weighted sky visible from the outside of each vertex."""
+        return self._sky_visibility(self.normals)
 
     @cached_property
-    def inner_openness(self) -> Float[np.ndarray, "vertices"]:
-        """The same from within: a head's inside, seen through the eyes' holes, is dark."""
-        return self._openness(-self.normals)
+    def inner_sky_visibility(self) -> Float[np.ndarray, "vertices"]:
+        """Share of the cosine-weighted sky visible from the inside of each vertex.
 
-    def _openness(self, normals: Float[np.ndarray, "vertices 3"]) -> Float[np.ndarray, "vertices"]:
-        starts = self.local(self.mesh.vertices + BIAS * self.extent * normals)
+        The inside of a head shows through holes at its eyes, and is dark.
+        """
+        return self._sky_visibility(-self.normals)
+
+    def _sky_visibility(
+        self, normals: Float[np.ndarray, "vertices 3"]
+    ) -> Float[np.ndarray, "vertices"]:
+        starts = self.to_local(self.mesh.vertices + BIAS * self.extent * normals)
         right, up = build_tangents(normals)
-        turn = 2 * np.pi * np.random.default_rng(0).random((len(starts), 1))
+        angle = 2 * np.pi * np.random.default_rng(0).random((len(starts), 1))
         blocked = np.zeros(len(starts))
-        for x, y in sample_disc(SKY_RAYS):
-            along, across = rotate(x, y, turn)
+        for x, y in sample_disc(_SKY_RAYS):
+            along, across = rotate(x, y, angle)
             height = np.sqrt(1 - x * x - y * y)
-            blocked += self.blocked(starts, along * right + across * up + height * normals)
-        return 1 - blocked / SKY_RAYS
+            blocked += self.occluded(starts, along * right + across * up + height * normals)
+        return 1 - blocked / _SKY_RAYS
 
-    def local(self, points: Float[np.ndarray, "points 3"]) -> Float[np.ndarray, "points 3"]:
-        """Points as Embree gets them: about the mesh's middle in units of its extent, so that
-        single precision is not spent on the distance from the origin."""
+    def to_local(self, points: Float[np.ndarray, "points 3"]) -> Float[np.ndarray, "points 3"]:
+        """Transform points to Embree's frame: centred, in units of the extent, single precision."""
         return np.ascontiguousarray((points - self.middle) / (self.extent or 1), np.float32)
 
 
-def _crossing(
+def _intersect_triangles(
     corners: Float[np.ndarray, "rays 3 3"],
     origins: Float[np.ndarray, "rays 3"],
     directions: Float[np.ndarray, "rays 3"],
 ) -> Float[np.ndarray, "rays 3"]:
-    """Barycentric coordinates at which rays cross their triangles (Moeller and Trumbore 1997),
-    in double precision; Embree's own are single."""
+    """Barycentric coordinates of hits in double precision (Moeller & Trumbore 1997)."""
     a, b, c = np.moveaxis(corners, 1, 0)
     ab, ac, away = b - a, c - a, origins - a
-    across, rotate = np.cross(directions, ac), np.cross(away, ab)
-    volume = np.einsum("px,px->p", ab, across)
+    p, q = np.cross(directions, ac), np.cross(away, ab)
+    volume = np.einsum("px,px->p", ab, p)
     volume = np.where(volume == 0, np.inf, volume)
-    second = (np.einsum("px,px->p", away, across) / volume).clip(0, 1)
-    third = (np.einsum("px,px->p", directions, rotate) / volume).clip(0, 1 - second)
+    second = (np.einsum("px,px->p", away, p) / volume).clip(0, 1)
+    third = (np.einsum("px,px->p", directions, q) / volume).clip(0, 1 - second)
     return np.stack([1 - second - third, second, third], 1)
-
-
-def build_tangents(
-    normals: Float[np.ndarray, "points 3"],
-) -> tuple[Float[np.ndarray, "points 3"], Float[np.ndarray, "points 3"]]:
-    """Two unit vectors square to each normal and to each other."""
-    steep = np.abs(normals[:, :1]) > 0.6
-    axis = np.where(steep, [[0.0, 1.0, 0.0]], [[1.0, 0.0, 0.0]])
-    right = normalise(np.cross(axis, normals))
-    return right, np.cross(normals, right)
-
-
-def rotate(
-    x: float, y: float, turn: Float[np.ndarray, "points 1"]
-) -> tuple[Float[np.ndarray, "points 1"], Float[np.ndarray, "points 1"]]:
-    """A point of the plane turned about the origin by many angles."""
-    cosine, sine = np.cos(turn), np.sin(turn)
-    return x * cosine - y * sine, x * sine + y * cosine
-
-
-def sample_disc(count: int) -> Float[np.ndarray, "count 2"]:
-    """Points evenly over the unit disc, a sunflower's seeds; seen as heights of a hemisphere they
-    are cosine-weighted directions."""
-    number = np.arange(count)
-    radius, angle = np.sqrt((number + 0.5) / count), number * np.pi * (3 - np.sqrt(5))
-    return np.stack([radius * np.cos(angle), radius * np.sin(angle)], 1)

@@ -1,43 +1,51 @@
-"""Where a picture is taken from."""
+"""Views: where a picture is taken from, and the rays through its pixels."""
 
 from dataclasses import dataclass
-from typing import NamedTuple, Protocol, runtime_checkable
+from typing import Protocol, runtime_checkable
 
 import numpy as np
 from jaxtyping import Float
 
 from skinnet.errors import InputError
+from skinnet.render._view_axes import view_axes
 
-
-class Rays(NamedTuple):
-    """One ray a sample, row by row from the top left; `directions` have length one."""
-
-    origins: Float[np.ndarray, "rays 3"]
-    directions: Float[np.ndarray, "rays 3"]
+_Rays = tuple[Float[np.ndarray, "rays 3"], Float[np.ndarray, "rays 3"]]
+"""Origins and unit directions of rays, row by row from the top left of the picture."""
 
 
 @runtime_checkable
 class View(Protocol):
-    """A camera: `size` (height, width) in pixels, and a ray through every sample of them."""
+    """A viewpoint with a picture of `size` (height, width) in pixels."""
 
     @property
-    def size(self) -> tuple[int, int]: ...
+    def size(self) -> tuple[int, int]:
+        """Height and width of the picture in pixels."""
+        ...
 
-    def rays(self, samples: int) -> Rays:
-        """`samples` x `samples` rays evenly over each pixel."""
+    def rays(self, samples: int) -> _Rays:
+        """Make `samples` x `samples` rays, evenly spread over each pixel."""
         ...
 
     def project(self, points: Float[np.ndarray, "points 3"]) -> Float[np.ndarray, "points 2"]:
-        """Column and row of points, (0, 0) the picture's upper left corner."""
+        """Project points to column and row; (0, 0) is the upper left corner of the picture."""
         ...
 
 
 @dataclass(frozen=True)
 class PerspectiveView:
-    """A pinhole at `eye` with `focal` length in pixels and its axis through the picture's middle.
+    """A pinhole view whose axis goes through the middle of the picture.
 
-    The rows of `rotation` are the camera's right, up and backward axes in the world, in whose unit
-    `eye` is.
+    Args:
+        size: Height and width of the picture in pixels.
+        eye: Position of the pinhole in the world.
+        rotation: The view's right, up and backward axes in the world, one a row.
+        focal: Focal length in pixels.
+
+    Example:
+        >>> import numpy as np
+        >>> view = PerspectiveView((20, 30), np.array([0.0, 0.0, 5.0]), np.eye(3), focal=10.0)
+        >>> view.project(np.array([[1.0, 1.0, 0.0]]))
+        array([[17.,  8.]])
     """
 
     size: tuple[int, int]
@@ -45,25 +53,34 @@ class PerspectiveView:
     rotation: Float[np.ndarray, "3 3"]
     focal: float
 
-    def rays(self, samples: int) -> Rays:
-        """`samples` x `samples` rays evenly over each pixel."""
+    def rays(self, samples: int) -> _Rays:
+        """Make `samples` x `samples` rays, evenly spread over each pixel."""
         x, y = _grid(self.size, samples)
         local = np.stack([x, y, np.full_like(x, -self.focal)], 1)
         local /= np.linalg.norm(local, axis=1, keepdims=True)
-        return Rays(np.broadcast_to(self.eye, local.shape), local @ self.rotation)
+        return np.broadcast_to(self.eye, local.shape), local @ self.rotation
 
     def project(self, points: Float[np.ndarray, "points 3"]) -> Float[np.ndarray, "points 2"]:
-        """Column and row of points in front of the camera."""
+        """Project points in front of the view to column and row."""
         local = (points - self.eye) @ self.rotation.T
         return _pixels(self.size, local[:, :2] * (self.focal / -local[:, 2:]))
 
 
 @dataclass(frozen=True)
 class OrthographicView:
-    """Parallel rays: `eye` in the middle of the picture's plane, `scale` in pixels a unit.
+    """A view along parallel rays. What lies behind the plane of the picture is not visible.
 
-    The rows of `rotation` are the camera's right, up and backward axes. Only what lies in front of
-    the plane is seen.
+    Args:
+        size: Height and width of the picture in pixels.
+        eye: Middle of the picture's plane in the world.
+        rotation: The view's right, up and backward axes in the world, one a row.
+        scale: Pixels per unit of the world.
+
+    Example:
+        >>> import numpy as np
+        >>> view = OrthographicView((20, 30), np.array([0.0, 0.0, 5.0]), np.eye(3), scale=2.0)
+        >>> view.project(np.array([[1.0, 1.0, 0.0]]))
+        array([[17.,  8.]])
     """
 
     size: tuple[int, int]
@@ -71,15 +88,15 @@ class OrthographicView:
     rotation: Float[np.ndarray, "3 3"]
     scale: float
 
-    def rays(self, samples: int) -> Rays:
-        """`samples` x `samples` rays evenly over each pixel."""
+    def rays(self, samples: int) -> _Rays:
+        """Make `samples` x `samples` rays, evenly spread over each pixel."""
         x, y = _grid(self.size, samples)
         local = np.stack([x, y, np.zeros_like(x)], 1) / self.scale
         origins = local @ self.rotation + self.eye
-        return Rays(origins, np.broadcast_to(-self.rotation[2], origins.shape))
+        return origins, np.broadcast_to(-self.rotation[2], origins.shape)
 
     def project(self, points: Float[np.ndarray, "points 3"]) -> Float[np.ndarray, "points 2"]:
-        """Column and row of points."""
+        """Project points to column and row."""
         local = (points - self.eye) @ self.rotation.T
         return _pixels(self.size, local[:, :2] * self.scale)
 
@@ -87,21 +104,39 @@ class OrthographicView:
 def frame_face(
     vertices: Float[np.ndarray, "vertices 3"],
     size: tuple[int, int],
-    turn: float = 0.0,
-    tilt: float = 0.0,
-    field: float = 20.0,
+    yaw: float = 0.0,
+    pitch: float = 0.0,
+    field_of_view: float = 20.0,
     fill: float = 0.92,
 ) -> PerspectiveView:
-    """A camera before a face, as near as leaves all of it within `fill` of the picture.
+    """Place a view before a face, as near as keeps all vertices within `fill` of the picture.
 
-    From straight ahead (+z, y up) it goes `turn` degrees around to the face's left and then `tilt`
-    degrees up; `field` is the angle of view over the picture's height, in degrees.
+    Args:
+        vertices: Positions, x to the face's left, y up and z forward.
+        size: Height and width of the picture in pixels.
+        yaw: Degrees around to the face's left; 0 is straight ahead (+z).
+        pitch: Degrees up.
+        field_of_view: Degrees over the height of the picture.
+        fill: Share of the picture's width and height that the face may take.
+
+    Returns:
+        The view.
+
+    Raises:
+        InputError: For a picture without pixels.
+
+    Example:
+        >>> import numpy as np
+        >>> view = frame_face(np.array([[-70.0, -100, 0], [70, 100, 0]]), (200, 200), fill=0.9)
+        >>> view.project(np.array([[0.0, 0, 0], [0, 100, 0]])).round(6)
+        array([[100., 100.],
+               [100.,  10.]])
     """
     height, width = size
     if min(size) < 1:
         raise InputError(f"A picture has at least one pixel a side; got {height} x {width}.")
-    rotation = view_axes(turn, tilt)
-    focal = height / 2 / np.tan(np.deg2rad(field) / 2)
+    rotation = view_axes(yaw, pitch)
+    focal = height / 2 / np.tan(np.deg2rad(field_of_view) / 2)
     low, high = (vertices @ rotation.T).min(0), (vertices @ rotation.T).max(0)
     middle = (low + high) / 2
     local = vertices @ rotation.T - middle
@@ -111,19 +146,10 @@ def frame_face(
     return PerspectiveView(size, eye, rotation, float(focal))
 
 
-def view_axes(turn: float, tilt: float = 0.0) -> Float[np.ndarray, "3 3"]:
-    """Right, up and backward axes of a camera that looks at the origin from `turn` degrees to the
-    left of a face and `tilt` degrees above it."""
-    a, b = np.deg2rad(turn), np.deg2rad(tilt)
-    back = np.array([np.sin(a) * np.cos(b), np.sin(b), np.cos(a) * np.cos(b)])
-    right = np.array([np.cos(a), 0.0, -np.sin(a)])
-    return np.stack([right, np.cross(back, right), back])
-
-
 def _grid(
     size: tuple[int, int], samples: int
 ) -> tuple[Float[np.ndarray, "rays"], Float[np.ndarray, "rays"]]:
-    """Places of the samples in pixels from the middle, x to the right and y up."""
+    """Positions of the samples in pixels from the middle, x to the right and y up."""
     height, width = size
     x = (np.arange(width * samples) + 0.5) / samples - width / 2
     y = height / 2 - (np.arange(height * samples) + 0.5) / samples
@@ -133,4 +159,5 @@ def _grid(
 def _pixels(
     size: tuple[int, int], local: Float[np.ndarray, "points 2"]
 ) -> Float[np.ndarray, "points 2"]:
+    """Column and row of positions in pixels from the middle."""
     return local * [1, -1] + np.array([size[1], size[0]]) / 2

@@ -1,4 +1,4 @@
-"""The surface that a camera sees, and what stands between it and the light."""
+"""The surface visible in a picture, and its visibility from lights and sky."""
 
 from dataclasses import dataclass
 from functools import cached_property
@@ -6,20 +6,29 @@ from functools import cached_property
 import numpy as np
 from jaxtyping import Bool, Float, Int
 
+from skinnet.mesh._vectors import normalise
 from skinnet.mesh.mesh import Mesh
-from skinnet.mesh.normals import normalise
-from skinnet.render.scene import BIAS, Scene, build_tangents, rotate, sample_disc
+from skinnet.render._ray_samples import build_tangents, rotate, sample_disc
+from skinnet.render.scene import BIAS, Scene
 from skinnet.render.views import View
 
 
 @dataclass(frozen=True)
 class GeometryBuffers:
-    """The surface under each sample of a picture, in flat arrays over those that hit it.
+    """The surface under each sample of a picture, in flat arrays over the samples that hit it.
 
-    `hit` is [H, W] over samples, `samples` of which make a pixel along either side. `normal` is
-    interpolated, `face` the triangle's; both look to the camera's side, for which they were
-    multiplied by `side`, -1 where the surface is seen from within. `towards` is the unit direction
-    to the camera, `uv` None for a mesh without texture coordinates.
+    Attributes:
+        scene: The mesh that was hit.
+        samples: Samples of a pixel along either side.
+        hit: Whether each sample hits the mesh, [H, W] over samples.
+        triangle: Index of the triangle.
+        barycentric: Barycentric coordinates in it.
+        position: Position in the mesh's unit.
+        normal: Interpolated unit normal, facing the viewer.
+        face_normal: The triangle's unit normal, facing the viewer.
+        side: 1 where the viewer sees the outside, -1 where both normals were reversed.
+        view_direction: Unit vector to the viewer.
+        uv: Texture coordinates; None for a mesh without them.
     """
 
     scene: Scene
@@ -29,17 +38,18 @@ class GeometryBuffers:
     barycentric: Float[np.ndarray, "hits 3"]
     position: Float[np.ndarray, "hits 3"]
     normal: Float[np.ndarray, "hits 3"]
-    face: Float[np.ndarray, "hits 3"]
+    face_normal: Float[np.ndarray, "hits 3"]
     side: Float[np.ndarray, "hits 1"]
-    towards: Float[np.ndarray, "hits 3"]
+    view_direction: Float[np.ndarray, "hits 3"]
     uv: Float[np.ndarray, "hits 2"] | None
 
     @cached_property
-    def start(self) -> Float[np.ndarray, "hits 3"]:
-        """Where shadow rays start: a little off the smooth surface that the normals describe.
+    def shadow_origin(self) -> Float[np.ndarray, "hits 3"]:
+        """Start of the shadow rays, a little above the smooth surface that the normals describe.
 
-        A ray from the flat triangle meets its neighbours wherever light grazes the smooth normals;
-        raised onto the corners' tangent planes it passes over them (Hanika 2021).
+        Rays that start on the flat triangle hit its neighbours at grazing angles. Projected onto
+        the tangent planes of the corners, the start lies above them (Hanika 2021, "Hacking the
+        shadow terminator").
         """
         corners = self.scene.mesh.triangles[self.triangle]
         raised = self.position.copy()
@@ -48,87 +58,119 @@ class GeometryBuffers:
             off = self.position - self.scene.mesh.vertices[vertex]
             below = np.einsum("px,px->p", off, normal).clip(max=0)
             raised -= (self.barycentric[:, k] * below)[:, None] * normal
-        return raised + BIAS * self.scene.extent * self.face
+        return raised + BIAS * self.scene.extent * self.face_normal
 
-    def lit(
+    def light_visibility(
         self, direction: Float[np.ndarray, "3"], angle: float = 0.0, rays: int = 16
     ) -> Float[np.ndarray, "hits"]:
-        """Share of a distant light, `angle` degrees across, that nothing hides from each sample.
+        """Share of a distant light that is visible from each sample.
 
-        `direction`, a unit vector, points to its middle. `rays` a pixel go to places spread over
-        it, those of each sample turned at random. 0 where the surface looks away.
+        Args:
+            direction: Unit vector to the middle of the light.
+            angle: Degrees that the light is across.
+            rays: Rays per pixel, spread over the light and rotated at random for each sample.
+
+        Returns:
+            From 0 to 1; 0 where the surface faces away.
         """
         facing = np.flatnonzero(self.normal @ direction > 0)
-        start = self.scene.local(self.start[facing] + self._skip(direction, facing))
+        start = self.scene.to_local(self.shadow_origin[facing] + self._offset(direction, facing))
         aims = sample_disc(-(-rays // self.samples**2)) if angle else np.zeros((1, 2))
         right, up = build_tangents(direction[None])
         turn = 2 * np.pi * np.random.default_rng(0).random((len(facing) if angle else 1, 1))
         blocked = np.zeros(len(facing))
         for x, y in np.tan(np.deg2rad(angle) / 2) * aims:
             along, across = rotate(x, y, turn)
-            blocked += self.scene.blocked(start, direction + along * right + across * up)
-        reached = np.zeros(len(self.position))
-        reached[facing] = 1 - blocked / len(aims)
-        return reached
+            blocked += self.scene.occluded(start, direction + along * right + across * up)
+        visibility = np.zeros(len(self.position))
+        visibility[facing] = 1 - blocked / len(aims)
+        return visibility
 
-    def _skip(
+    def _offset(
         self, direction: Float[np.ndarray, "3"], chosen: Int[np.ndarray, "chosen"]
     ) -> Float[np.ndarray, "chosen 3"]:
-        """A triangle's length towards a light from which the triangle turns and the smooth normal
-        does not: without it a coarse mesh is dappled with dark triangles."""
-        rotate = np.flatnonzero(self.face[chosen] @ direction < 0)
-        triangles = self.scene.mesh.triangles[self.triangle[chosen[rotate]]]
+        """Move a ray one edge length towards a light behind its triangle.
+
+        The smooth normal of such a triangle faces the light, its own does not; without the offset
+        a coarse mesh shows dark triangles.
+        """
+        behind = np.flatnonzero(self.face_normal[chosen] @ direction < 0)
+        triangles = self.scene.mesh.triangles[self.triangle[chosen[behind]]]
         corners = self.scene.mesh.vertices[triangles]
         longest = np.linalg.norm(corners - np.roll(corners, 1, 1), axis=2).max(1)
-        skip = np.zeros((len(chosen), 3))
-        skip[rotate] = longest[:, None] * direction
-        return skip
+        offset = np.zeros((len(chosen), 3))
+        offset[behind] = longest[:, None] * direction
+        return offset
 
-    def openness(self) -> Float[np.ndarray, "hits"]:
-        """Share of the sky's light that reaches each sample, from the vertices' own."""
+    def sky_visibility(self) -> Float[np.ndarray, "hits"]:
+        """Share of the cosine-weighted sky visible from each sample, between 0 and 1.
+
+        It is interpolated between vertices (`Scene.outer_sky_visibility`).
+        """
         corners = self.scene.mesh.triangles[self.triangle]
-        open_ = np.asarray((self.scene.outer_openness[corners] * self.barycentric).sum(1))
+        visibility = (self.scene.outer_sky_visibility[corners] * self.barycentric).sum(1)
+        visibility = np.asarray(visibility)
         within = self.side[:, 0] < 0
         if within.any():
-            inner = self.scene.inner_openness[corners[within]]
-            open_[within] = (inner * self.barycentric[within]).sum(1)
-        return open_
+            inner = self.scene.inner_sky_visibility[corners[within]]
+            visibility[within] = (inner * self.barycentric[within]).sum(1)
+        return visibility
 
 
 def trace_geometry(mesh: Mesh | Scene, view: View, samples: int = 1) -> GeometryBuffers:
-    """The surface that a camera sees, at `samples` x `samples` places of every pixel.
+    """Trace rays through `samples` x `samples` positions of every pixel to the visible surface.
 
-    Hand in a `Scene` to take several views of one mesh.
+    Args:
+        mesh: A mesh, or a `Scene` of it to share between several views.
+        view: Where the picture is taken from.
+        samples: Samples of a pixel along either side.
+
+    Returns:
+        What the rays hit.
+
+    Example:
+        >>> import numpy as np
+        >>> from skinnet.mesh import Mesh
+        >>> from skinnet.render import frame_face
+        >>> square = np.array([[-1.0, -1, 0], [1, -1, 0], [1, 1, 0], [-1, 1, 0]])
+        >>> mesh = Mesh(square, np.array([[0, 1, 2], [0, 2, 3]]))
+        >>> buffers = trace_geometry(mesh, frame_face(square, (8, 8), fill=0.5))
+        >>> buffers.hit.astype(int)[1:4]
+        array([[0, 0, 0, 0, 0, 0, 0, 0],
+               [0, 0, 1, 1, 1, 1, 0, 0],
+               [0, 0, 1, 1, 1, 1, 0, 0]])
+        >>> buffers.normal[0]
+        array([0., 0., 1.])
     """
     scene = mesh if isinstance(mesh, Scene) else Scene(mesh)
-    rays = view.rays(samples)
-    hits = scene.first(*rays)
-    hit = hits.triangle >= 0
-    triangle, barycentric = hits.triangle[hit], hits.barycentric[hit]
-    mesh, towards = scene.mesh, -rays.directions[hit]
+    origins, directions = view.rays(samples)
+    triangle, barycentric = scene.intersect(origins, directions)
+    hit = triangle >= 0
+    triangle, barycentric = triangle[hit], barycentric[hit]
+    mesh, towards = scene.mesh, -directions[hit]
     corners = mesh.triangles[triangle]
     a, b, c = np.moveaxis(mesh.vertices[corners], 1, 0)
-    face = normalise(np.cross(b - a, c - a))
-    side = np.where(np.einsum("px,px->p", face, towards) < 0, -1.0, 1.0)[:, None]
+    face_normal = normalise(np.cross(b - a, c - a))
+    side = np.where(np.einsum("px,px->p", face_normal, towards) < 0, -1.0, 1.0)[:, None]
     uv = None
     if mesh.uv is not None and mesh.uv_triangles is not None:
-        uv = _mean(barycentric, mesh.uv[mesh.uv_triangles[triangle]])
+        uv = _interpolate(barycentric, mesh.uv[mesh.uv_triangles[triangle]])
     return GeometryBuffers(
         scene,
         samples,
         hit.reshape(view.size[0] * samples, -1),
         triangle,
         barycentric,
-        _mean(barycentric, mesh.vertices[corners]),
-        side * normalise(_mean(barycentric, scene.normals[corners])),
-        side * face,
+        _interpolate(barycentric, mesh.vertices[corners]),
+        side * normalise(_interpolate(barycentric, scene.normals[corners])),
+        side * face_normal,
         side,
         towards,
         uv,
     )
 
 
-def _mean(
+def _interpolate(
     barycentric: Float[np.ndarray, "points 3"], corners: Float[np.ndarray, "points 3 k"]
 ) -> Float[np.ndarray, "points k"]:
     return np.asarray(np.einsum("pk,pkx->px", barycentric, corners))

@@ -9,7 +9,7 @@ from jaxtyping import Float, Int
 from skinnet.errors import InputError
 from skinnet.mesh._mesh_parts import MeshPart, concatenate, read_obj_positions, read_parts
 from skinnet.mesh._seams import match_positions, merge_coordinates
-from skinnet.mesh._texture_atlas import Page, pack_atlas
+from skinnet.mesh._texture_atlas import pack_atlas
 from skinnet.mesh._topology import weld
 from skinnet.mesh.mesh import Mesh
 from skinnet.mesh.repair import guess_length_unit
@@ -41,7 +41,7 @@ def load_registered(
     if not files:
         raise InputError(f"{name} has no meshes; give .obj, .ply, .glb or .gltf files.")
     read = [read_parts(Path(file)) for file in files]
-    stacked = [concatenate([part.corners for part in parts]) for parts in read]
+    stacked = [concatenate([part.geometry for part in parts]) for parts in read]
     _check([(str(f), c.vertices, c.triangles) for f, c in zip(files, stacked, strict=True)])
     faces = np.stack([corners.vertices for corners in stacked])
     used, triangles = _joined(Path(files[0]), faces, stacked[0].triangles)
@@ -107,7 +107,7 @@ def _joined(
 
 
 def _coordinates(parts: list[MeshPart], triangles: Triangles) -> Coordinates:
-    atlas = pack_atlas([Page(part.corners.triangles, part.uv, None, part.colour) for part in parts])
+    atlas = pack_atlas([part._replace(texture=None) for part in parts])
     if atlas is None:
         return None, None
     return merge_coordinates(triangles, atlas.uv, atlas.triangles)

@@ -8,9 +8,10 @@ from jaxtyping import Bool, Float, Int
 from skinnet.errors import InputError
 from skinnet.images.photograph import srgb_to_linear
 from skinnet.mesh._topology import boundary, label_components, weld
+from skinnet.mesh._vectors import normalise
 from skinnet.mesh.closest_point import ClosestPoints, TriangleTree
 from skinnet.mesh.mesh import Mesh
-from skinnet.mesh.normals import compute_vertex_normals, normalise
+from skinnet.mesh.normals import compute_vertex_normals
 from skinnet.mesh.sampling import sample_bilinear
 from skinnet.texture.warp import TextureSpace, Warped, warp_texture
 

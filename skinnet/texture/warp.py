@@ -7,7 +7,8 @@ import numpy as np
 from jaxtyping import Bool, Float, Int, Shaped
 
 from skinnet.errors import InputError
-from skinnet.mesh.raster import barycentric_gradients, rasterise
+from skinnet.mesh._barycentric import barycentric_gradients
+from skinnet.mesh.raster import rasterise
 from skinnet.mesh.sampling import sample_bilinear
 
 MOST_SAMPLES = 8

@@ -105,7 +105,7 @@ def _visibility(
     seen = np.zeros(len(found.position), np.uint64)
     light, most = (np.zeros(len(found.position)) for _ in range(2))
     for k, direction in enumerate(directions):
-        reached = found.lit(direction)
+        reached = found.light_visibility(direction)
         cosine = (found.normal @ direction).clip(0)
         seen |= (reached > 0).astype(np.uint64) << np.uint64(k)
         light, most = light + reached * cosine, most + cosine

@@ -167,7 +167,7 @@ def test_a_texture_lies_as_in_its_file_whatever_its_exif_says(tmp_path: Path) ->
         ("word.obj", "v 0 0 x\nv 1 0 0\nv 0 1 0\nf 1 2 3\n", "cannot be read as a mesh"),
         ("cut.ply", "ply\nformat ascii 1.0\nelement vertex 3\n", "cannot be read as a mesh"),
         ("cut.glb", "glTF", "cannot be read as a mesh"),
-        ("scan.fbx", "", "is no mesh that is read"),
+        ("scan.fbx", "", "is not a mesh file that can be read"),
     ],
 )
 def test_files_that_are_no_meshes_are_refused(

@@ -4,7 +4,8 @@ import numpy as np
 from trimesh.creation import box, icosphere
 
 from skinnet.mesh._topology import weld
-from skinnet.mesh.normals import compute_vertex_normals, normalise
+from skinnet.mesh._vectors import normalise
+from skinnet.mesh.normals import compute_vertex_normals
 
 
 def test_a_sphere_s_normals_point_outwards() -> None:

@@ -5,8 +5,9 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from skinnet.mesh.normals import normalise
-from skinnet.render.lights import SphericalHarmonics, evaluate_harmonics
+from skinnet.mesh._vectors import normalise
+from skinnet.render._harmonics import evaluate_harmonics
+from skinnet.render.lights import SphericalHarmonics
 
 
 def sphere(count: int = 200_000) -> np.ndarray:

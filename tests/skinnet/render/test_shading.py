@@ -6,11 +6,13 @@ from trimesh.creation import icosphere
 
 from skinnet.errors import InputError
 from skinnet.images.photograph import linear_to_srgb, to_uint8
+from skinnet.mesh._vectors import normalise
 from skinnet.mesh.mesh import Mesh
-from skinnet.mesh.normals import normalise
-from skinnet.render._shading import EXPONENT, render, shade
+from skinnet.render._shading import EXPONENT, shade
+from skinnet.render._view_axes import view_axes
 from skinnet.render.lights import DirectionalLight, SphericalHarmonics
-from skinnet.render.views import OrthographicView, frame_face, view_axes
+from skinnet.render.rendering import render
+from skinnet.render.views import OrthographicView, frame_face
 from skinnet.render.visibility import trace_geometry
 
 _SPHERE = icosphere(subdivisions=4)

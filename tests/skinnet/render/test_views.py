@@ -6,7 +6,8 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from skinnet.errors import InputError
-from skinnet.render.views import OrthographicView, PerspectiveView, View, frame_face, view_axes
+from skinnet.render._view_axes import view_axes
+from skinnet.render.views import OrthographicView, PerspectiveView, View, frame_face
 
 HEAD = np.random.default_rng(0).normal(size=(500, 3)) * [70, 100, 80] + [3, -20, 40]
 
@@ -22,21 +23,21 @@ def views() -> list[View]:
 @pytest.mark.parametrize("view", views())
 @pytest.mark.parametrize("samples", [1, 3])
 def test_a_point_on_a_ray_is_seen_in_its_pixel(view: View, samples: int) -> None:
-    rays = view.rays(samples)
-    assert rays.origins.shape == (30 * 40 * samples**2, 3)
-    assert np.allclose(np.linalg.norm(rays.directions, axis=1), 1)
+    origins, directions = view.rays(samples)
+    assert origins.shape == (30 * 40 * samples**2, 3)
+    assert np.allclose(np.linalg.norm(directions, axis=1), 1)
     row, column = np.mgrid[: 30 * samples, : 40 * samples]
     centres = (np.stack([column, row], -1).reshape(-1, 2) + 0.5) / samples
-    assert np.allclose(view.project(rays.origins + 4 * rays.directions), centres)
+    assert np.allclose(view.project(origins + 4 * directions), centres)
 
 
 def test_from_the_front_up_is_up_and_the_left_side_is_at_the_right() -> None:
     view = frame_face(HEAD, (200, 160))
     up, left, middle = view.project(HEAD.mean(0) + [[0, 50, 0], [50, 0, 0], [0, 0, 0]])
     assert up[1] < middle[1] - 5 and left[0] > middle[0] + 5
-    turned = frame_face(HEAD, (200, 160), turn=90.0)
+    turned = frame_face(HEAD, (200, 160), yaw=90.0)
     assert np.allclose(turned.rotation[2], [1, 0, 0])
-    assert np.allclose(frame_face(HEAD, (200, 160), tilt=90.0).rotation[2], [0, 1, 0])
+    assert np.allclose(frame_face(HEAD, (200, 160), pitch=90.0).rotation[2], [0, 1, 0])
 
 
 @given(st.floats(-180, 180), st.floats(-80, 80), st.floats(5, 70), st.sampled_from([120, 200, 333]))

@@ -5,10 +5,11 @@ import pytest
 from trimesh.creation import box, icosphere
 
 from skinnet.errors import InputError
+from skinnet.mesh._vectors import normalise
 from skinnet.mesh.mesh import Mesh
-from skinnet.mesh.normals import normalise
+from skinnet.render._view_axes import view_axes
 from skinnet.render.scene import Scene
-from skinnet.render.views import OrthographicView, PerspectiveView, view_axes
+from skinnet.render.views import OrthographicView, PerspectiveView
 from skinnet.render.visibility import trace_geometry
 
 
@@ -44,7 +45,7 @@ def test_buffers_hold_the_place_that_is_seen(far: float) -> None:
     assert np.allclose(seen, (np.stack([column, row], 1) + 0.5) / 2, atol=1e-6)
     assert buffers.uv is not None
     assert np.allclose(buffers.uv, (buffers.position[:, :2] - [far, 0]) / 3 + 0.5)
-    assert np.allclose(buffers.normal, [0, 0, 1]) and np.allclose(buffers.face, [0, 0, 1])
+    assert np.allclose(buffers.normal, [0, 0, 1]) and np.allclose(buffers.face_normal, [0, 0, 1])
 
 
 def test_the_nearest_surface_hides_what_is_behind_it() -> None:
@@ -61,7 +62,7 @@ def test_surfaces_seen_from_behind_turn_to_the_camera() -> None:
     turned = Mesh(mesh.vertices, mesh.triangles[:, ::-1])
     buffers = trace_geometry(turned, from_above())
     assert np.allclose(buffers.normal, [0, 0, 1]) and (buffers.side == -1).all()
-    assert (buffers.lit(np.array([0.0, 0, 1])) == 1).all()
+    assert (buffers.light_visibility(np.array([0.0, 0, 1])) == 1).all()
 
 
 def test_a_sphere_shows_its_smooth_normals() -> None:
@@ -76,7 +77,7 @@ def test_a_box_casts_its_shadow_where_geometry_says() -> None:
     scene = joined(square(3.0), Mesh(np.array(cube.vertices), np.array(cube.faces)))
     buffers = trace_geometry(scene, from_above(80, 13.3))
     light = normalise(np.array([1.0, 0.0, 1.0]))
-    lit = buffers.lit(light)
+    lit = buffers.light_visibility(light)
     x, y, z = buffers.position.T
     # At 45 degrees a box of height one throws its shadow one unit to the other side.
     shadow = (x > -1.5) & (x < 0.5) & (np.abs(y) < 0.5)
@@ -89,8 +90,8 @@ def test_a_wide_light_throws_a_soft_shadow() -> None:
     blocker, ground = square(1.0, z=1.0), square(4.0)
     view = OrthographicView((20, 60), np.array([3.0, 0.0, 0.5]), view_axes(0.0), 10.0)
     buffers = trace_geometry(joined(ground, blocker), view)
-    hard = buffers.lit(normalise(np.array([-1.0, 0, 1])))
-    soft = buffers.lit(normalise(np.array([-1.0, 0, 1])), angle=20.0, rays=64)
+    hard = buffers.light_visibility(normalise(np.array([-1.0, 0, 1])))
+    soft = buffers.light_visibility(normalise(np.array([-1.0, 0, 1])), angle=20.0, rays=64)
     x, y, _ = buffers.position.T
     # The blocker's edge at x = 1 throws to x = 2.
     assert (hard[x < 1.95] == 0).all() and (hard[x > 2.05] == 1).all()
@@ -106,20 +107,24 @@ def test_no_triangle_shades_itself_or_its_neighbours_on_a_coarse_ball() -> None:
         Mesh(np.array(ball.vertices), np.array(ball.faces)), from_above(60, 25.0)
     )
     light = normalise(np.array([1.0, 0.2, 0.3]))
-    assert (buffers.lit(light)[buffers.normal @ light > 0] == 1).all()
-    assert (buffers.lit(light)[buffers.normal @ light < 0] == 0).all()
+    assert (buffers.light_visibility(light)[buffers.normal @ light > 0] == 1).all()
+    assert (buffers.light_visibility(light)[buffers.normal @ light < 0] == 0).all()
 
 
 def test_openness_is_the_share_of_the_sky_that_is_seen() -> None:
     ball = icosphere(subdivisions=2)
-    assert (Scene(Mesh(np.array(ball.vertices), np.array(ball.faces))).outer_openness == 1).all()
-    assert (Scene(Mesh(np.array(ball.vertices), np.array(ball.faces))).inner_openness == 0).all()
+    assert (
+        Scene(Mesh(np.array(ball.vertices), np.array(ball.faces))).outer_sky_visibility == 1
+    ).all()
+    assert (
+        Scene(Mesh(np.array(ball.vertices), np.array(ball.faces))).inner_sky_visibility == 0
+    ).all()
     # A wall that rises for ever from the edge of a floor hides half of it.
     wall = np.array([[0, -99, 0], [0, 99, 0], [0, 99, 99], [0, -99, 99]], np.float64)
     floor = np.array([[0.5, 0, 0], [1.5, 0, 0], [0.5, 1, 0]])
     triangles = np.array([[0, 1, 2], [0, 2, 3], [4, 5, 6]])
     scene = Scene(Mesh(np.concatenate([wall, floor]), triangles))
-    assert scene.outer_openness[4:] == pytest.approx([0.5] * 3, abs=0.04)
+    assert scene.outer_sky_visibility[4:] == pytest.approx([0.5] * 3, abs=0.04)
 
 
 @pytest.mark.parametrize(

@@ -53,10 +53,10 @@ def test_seen_is_what_single_rays_find(head: Head, view: OrthographicView, front
         seen = int(front.seen[rows[pixel], columns[pixel]])
         for k in range(0, 64, 5):
             facing = found.normal[pixel] @ DIRECTIONS[k] > 0.3
-            if not facing or found.face[pixel] @ DIRECTIONS[k] < 0.1:
+            if not facing or found.face_normal[pixel] @ DIRECTIONS[k] < 0.1:
                 continue
-            start = scene.local(found.start[pixel : pixel + 1])
-            assert (seen >> k & 1) == (not scene.blocked(start, DIRECTIONS[k : k + 1])[0])
+            start = scene.to_local(found.shadow_origin[pixel : pixel + 1])
+            assert (seen >> k & 1) == (not scene.occluded(start, DIRECTIONS[k : k + 1])[0])
 
 
 def test_a_wall_hides_its_side_of_the_sky(view: OrthographicView) -> None:

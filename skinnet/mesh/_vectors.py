@@ -1,0 +1,10 @@
+"""Arithmetic of vectors in arrays."""
+
+import numpy as np
+from jaxtyping import Float
+
+
+def normalise(vectors: Float[np.ndarray, "*shape 3"]) -> Float[np.ndarray, "*shape 3"]:
+    """Scale vectors to length one; zero stays zero."""
+    length = np.linalg.norm(vectors, axis=-1, keepdims=True)
+    return vectors / np.where(length > 0, length, 1)
