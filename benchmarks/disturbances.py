@@ -9,8 +9,7 @@ import torch
 from numpy.typing import NDArray
 from PIL import Image
 
-from skinnet.images.faces import resize
-from skinnet.images.photograph import linear_to_srgb, srgb_to_linear, to_uint8
+from skinnet.images import linear_to_srgb, resize, srgb_to_linear, to_uint8
 from skinnet.physics import load_light, load_observer, srgb_to_xyz
 
 Photograph = NDArray[np.uint8]

@@ -21,8 +21,7 @@ from benchmarks.report import Results
 from benchmarks.running_statistics import Moments
 from benchmarks.scene import under_daylight
 from benchmarks.typology import GROUPS, group, typology_angle
-from skinnet.images.faces import crop_box, find_face, resize, skin_mask
-from skinnet.images.photograph import read_photo, srgb_to_linear
+from skinnet.images import find_face, frame_head, read_photo, resize, segment_skin, srgb_to_linear
 from skinnet.network.autoencoder import SkinMaps
 from skinnet.physics import SkinDecoder
 
@@ -42,7 +41,7 @@ PIGMENTS = ("melanin", "hemoglobin")
 
 
 class Portrait(NamedTuple):
-    """A crop, uint8 sRGB [height, width, 3], where `skin_mask` sees skin in it, and the median
+    """A crop, uint8 sRGB [height, width, 3], where `segment_skin` sees skin in it, and the median
     linear RGB of skin and wall in the whole photograph."""
 
     crop: NDArray[np.uint8]
@@ -64,8 +63,8 @@ def portrait(photo: NDArray[np.uint8]) -> Portrait | None:
     """The square around the face, as `train.portraits` cuts it out, at `LARGEST` pixels."""
     if (face := find_face(photo)) is None:
         return None
-    box = crop_box(face, photo.shape[1], photo.shape[0])
-    crop, mask = photo[box.slices], skin_mask(photo, face)[box.slices]
+    box = frame_head(face, photo.shape[1], photo.shape[0])
+    crop, mask = photo[box.slices], segment_skin(photo, face)[box.slices]
     # Without any skin the whole crop's colour, which nobody asks for.
     colour = np.median(srgb_to_linear(crop[mask >= min(0.5, mask.max())]), 0)
     scale = min(1.0, LARGEST / max(box.width, box.height))

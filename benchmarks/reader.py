@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 from torch import Tensor
 
 from benchmarks.scene import Pixels, Scene, on
-from skinnet.images.faces import resize
+from skinnet.images import resize
 from skinnet.network.autoencoder import SkinAutoencoder, SkinMaps
 from skinnet.physics import Capture, SkinDecoder
 

@@ -1,4 +1,4 @@
-"""A photograph read as skin, then tanned and flushed, with the shipped model.
+"""Melanin and hemoglobin of a photograph, and two edits of them, with the shipped model.
 
     python -m examples.astronaut          # writes demo/astronaut.png
 
@@ -10,35 +10,36 @@ from pathlib import Path
 from skimage.data import astronaut
 
 from skinnet import Decomposer
-from skinnet.images.photograph import write_png
-from skinnet.inference.panel import picture, pigment, sheet
+from skinnet.images import write_png
+from skinnet.inference import draw_grid, draw_picture, draw_pigment_map
 
 TARGET = Path("demo/astronaut.png")
 
 
 def main() -> None:
-    """Write the strip: photograph, two maps, reconstruction, two edits."""
-    decompose = Decomposer()
-    photograph = astronaut()
-    found = decompose(photograph)
-    face = found.box.slices
+    """Write a row of tiles: photograph, two maps, reconstruction, two edits."""
+    decomposer = Decomposer()
+    photo = astronaut()
+    decomposition = decomposer(photo)
+    head = decomposition.box.slices
+    mask = decomposition.mask[head]
 
-    # Half as much melanin again is a tan, twice the blood a flush; nothing else is touched.
-    tanned = decompose.edit(photograph, melanin=1.5)
-    flushed = decompose.edit(photograph, hemoglobin=2.0)
+    # Half as much melanin again looks like a tan, twice the blood like a flush.
+    tanned = decomposer.edit(photo, melanin=1.5)
+    flushed = decomposer.edit(photo, hemoglobin=2.0)
 
     tiles = [
-        picture("photograph", photograph[face]),
-        pigment(found, "melanin"),
-        pigment(found, "hemoglobin"),
-        picture("reconstruction", found.reconstruction[face]),
-        picture("melanin x 1.5", tanned[face]),
-        picture("hemoglobin x 2", flushed[face]),
+        draw_picture("photograph", photo[head]),
+        draw_pigment_map("melanin", decomposition.melanin[head], mask),
+        draw_pigment_map("hemoglobin", decomposition.hemoglobin[head], mask),
+        draw_picture("reconstruction", decomposition.reconstruction[head]),
+        draw_picture("melanin x 1.5", tanned[head]),
+        draw_picture("hemoglobin x 2", flushed[head]),
     ]
     TARGET.parent.mkdir(exist_ok=True)
-    write_png(TARGET, sheet(tiles, 6))
+    write_png(TARGET, draw_grid(tiles, 6))
 
-    for name, numbers in found.summary()["maps"].items():
+    for name, numbers in decomposition.summary()["maps"].items():
         print(f"{name:12} {numbers['mean']:8.4f} +- {numbers['std']:.4f} {numbers['unit']}")
     print(f"written: {TARGET}")
 

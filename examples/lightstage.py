@@ -20,7 +20,7 @@ import torch.nn.functional as F
 from skinnet.appearance.colour import SkinColour
 from skinnet.appearance.maps_file import load_maps
 from skinnet.cli import main as skinnet
-from skinnet.images.photograph import linear_to_srgb, to_uint8
+from skinnet.images import linear_to_srgb, to_uint8
 from skinnet.mesh.mesh import Mesh
 from skinnet.mesh.mesh_file import write_mesh
 from skinnet.physics import load_spectrum_to_srgb

@@ -23,7 +23,7 @@ from skimage.morphology import dilation, disk, erosion
 from skinnet.appearance.hybrid import HybridModel
 from skinnet.appearance.maps_file import save_maps
 from skinnet.cli import main as skinnet
-from skinnet.images.photograph import read_photo, srgb_to_linear
+from skinnet.images import read_photo, srgb_to_linear
 from skinnet.pipeline._maps import invert
 from skinnet.pipeline.calibrate import ColourSettings
 from skinnet.shape.procedural_head import chart

@@ -12,7 +12,7 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
-from skinnet.images.photograph import to_uint8, write_png
+from skinnet.images import to_uint8, write_png
 from train.portraits import find_crops
 from train.synthetic.faces import SyntheticFaces
 

@@ -19,8 +19,8 @@ from torch.export import Dim
 from export.graphs import DECODED, OUTPUTS, PIXELS, DecoderGraph, EncoderGraph, Output, example
 from skinnet._version import __version__
 from skinnet.errors import InputError
-from skinnet.files import written_together
-from skinnet.inference.onnx_model import FORMAT, decoder_path
+from skinnet.files import write_together
+from skinnet.inference import ONNX_FORMAT, get_decoder_path
 from skinnet.network.autoencoder import SkinAutoencoder
 from skinnet.network.weights import save_weights
 from skinnet.physics import LIGHTS
@@ -59,9 +59,9 @@ def export_model(
     decoder_inputs = {k: v for k, v in zip(OUTPUTS, maps, strict=True) if k != "mask"}
     jobs = [
         ("encoder", EncoderGraph(model), {"image": photograph}, OUTPUTS, path),
-        ("decoder", DecoderGraph(model.decoder), decoder_inputs, DECODED, decoder_path(path)),
+        ("decoder", DecoderGraph(model.decoder), decoder_inputs, DECODED, get_decoder_path(path)),
     ]
-    with written_together() as beside:
+    with write_together() as beside:
         reports = []
         for kind, graph, inputs, outputs, target in jobs:
             part = beside(target)
@@ -116,7 +116,7 @@ def _describe(
     file = onnx.load(path)
     metadata = {
         "skinnet.kind": kind,
-        "skinnet.format": FORMAT,
+        "skinnet.format": ONNX_FORMAT,
         "skinnet.version": __version__,
         "skinnet.outputs": json.dumps(outputs),
         "skinnet.lights": json.dumps(LIGHTS),

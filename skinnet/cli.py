@@ -158,11 +158,11 @@ def edit(options: argparse.Namespace) -> int:
     """Write one photograph with its pigments multiplied."""
     from skinnet.images.photograph import read_photo
     from skinnet.inference.decomposer import Decomposer
-    from skinnet.inference.results import check_suffix, write_picture
+    from skinnet.inference.results import _check_suffix, _write_picture
 
     source: str = options.input
     target: Path = options.output or _beside(source).parent / f"{_stem(source)}_edited.png"
-    check_suffix(target)
+    _check_suffix(target)
     if source != STDIN and target.exists() and Path(source).exists() and target.samefile(source):
         raise InputError(f"{target} is the photograph itself; choose another file with -o.")
     decomposer = Decomposer(options.model)
@@ -170,7 +170,7 @@ def edit(options: argparse.Namespace) -> int:
     edited = decomposer.edit(
         photo, options.melanin, options.hemoglobin, options.whole_image, _name(source)
     )
-    write_picture(target, edited)
+    _write_picture(target, edited)
     _say(f"{_name(source)}: {target}")
     return OK
 
@@ -191,11 +191,13 @@ def _photographs(inputs: Sequence[str]) -> Iterator[str | InputError]:
 
 
 def _inside(folder: Path) -> list[str | InputError]:
-    from skinnet.images.photograph import SUFFIXES
+    from skinnet.images._decode import PHOTO_SUFFIXES
 
     shown = (file for file in sorted(folder.iterdir()) if not file.name.startswith("."))
-    found = [str(file) for file in shown if file.suffix.lower() in SUFFIXES and file.is_file()]
-    suffixes = ", ".join(sorted(SUFFIXES))
+    found = [
+        str(file) for file in shown if file.suffix.lower() in PHOTO_SUFFIXES and file.is_file()
+    ]
+    suffixes = ", ".join(sorted(PHOTO_SUFFIXES))
     return [*found] or [
         InputError(f"The folder {folder} holds no photographs; they end in {suffixes}.")
     ]

@@ -1,9 +1,16 @@
-"""Errors that are sentences for the person who ran the command."""
+"""Errors whose messages tell the user what to do."""
 
 
 class InputError(ValueError):
-    """An input that cannot be used; the message names it and says what to do."""
+    """An input cannot be used; the message names it, gives its value and says what to do.
+
+    Example:
+        >>> from skinnet.images import read_photo
+        >>> read_photo("absent.jpg")
+        Traceback (most recent call last):
+        skinnet.errors.InputError: There is no file absent.jpg; check the path.
+    """
 
 
 class NoFaceError(InputError):
-    """A photograph in which no face was found."""
+    """No face was found in a photograph."""

@@ -1,4 +1,4 @@
-"""Files that appear whole or not at all."""
+"""Files that are written completely or not at all."""
 
 import os
 import struct
@@ -10,7 +10,7 @@ from secrets import token_hex
 
 from skinnet.errors import InputError
 
-BROKEN = (
+READ_ERRORS = (
     *(OSError, SyntaxError, ValueError, EOFError, TypeError, RuntimeError, MemoryError),
     *(ArithmeticError, LookupError, AttributeError, struct.error, zlib.error),
 )
@@ -18,40 +18,84 @@ BROKEN = (
 
 
 @contextmanager
-def written_together() -> Iterator[Callable[[Path], Path]]:
-    """Hand out a temporary name for each file to write; rename all of them on leaving.
+def write_together() -> Iterator[Callable[[Path], Path]]:
+    """Write several files, all of them or none.
 
-    The names lie beside the files, on the same disk. If the body or a renaming raises, none of the
-    new files is left. Raises `InputError` where a folder already has a file's name.
+    Yields:
+        A function from the path of a file to the temporary path to write it to, in the same folder.
+        At the end all temporary files are renamed. If an error is raised before, none of the new
+        files is left.
+
+    Raises:
+        InputError: a folder has the name of one of the files.
+
+    Example:
+        >>> from tempfile import mkdtemp
+        >>> folder = Path(mkdtemp())
+        >>> with write_together() as temporary:
+        ...     _ = temporary(folder / "a.txt").write_text("a")
+        ...     _ = temporary(folder / "b.txt").write_text("b")
+        >>> sorted(path.name for path in folder.iterdir())
+        ['a.txt', 'b.txt']
     """
     parts: dict[Path, Path] = {}
 
-    def beside(path: Path) -> Path:
+    def name_temporary(path: Path) -> Path:
         if path.is_dir():
-            raise InputError(f"{path} is a folder, and a file of that name is to be written.")
+            raise InputError(f"{path} is a folder, but a file of that name must be written.")
         return parts.setdefault(path, path.with_name(f".{token_hex(6)}.part{path.suffix}"))
 
-    placed: list[Path] = []
+    renamed: list[Path] = []
     try:
-        yield beside
+        yield name_temporary
         for path, part in parts.items():
             os.replace(part, path)
-            placed.append(path)
+            renamed.append(path)
     except BaseException:
-        for path in (*placed, *parts.values()):
+        for path in (*renamed, *parts.values()):
             path.unlink(missing_ok=True)
         raise
 
 
 @contextmanager
-def atomic(path: Path) -> Iterator[Path]:
-    """A temporary name beside `path` that takes its place on leaving, or is removed on an error."""
-    with written_together() as beside:
-        yield beside(path)
+def write_atomically(path: Path) -> Iterator[Path]:
+    """Write a file completely or not at all.
+
+    Args:
+        path: the file to write.
+
+    Yields:
+        The temporary path to write to, in the same folder. At the end it is renamed to `path`; if
+        an error is raised before, it is removed, and an older file at `path` stays.
+
+    Raises:
+        InputError: `path` is a folder.
+
+    Example:
+        >>> from tempfile import mkdtemp
+        >>> folder = Path(mkdtemp())
+        >>> with write_atomically(folder / "a.txt") as temporary:
+        ...     _ = temporary.write_text("a")
+        >>> [path.name for path in folder.iterdir()]
+        ['a.txt']
+    """
+    with write_together() as name_temporary:
+        yield name_temporary(path)
 
 
-def made(folder: Path, remedy: str) -> Path:
-    """The folder, made if needed; `InputError` with the remedy if it cannot be."""
+def make_folder(folder: Path, remedy: str) -> Path:
+    """Make a folder and its parents where they do not exist.
+
+    Args:
+        folder: the folder to make.
+        remedy: what to do if it cannot be made; the end of the error message.
+
+    Returns:
+        `folder` itself.
+
+    Raises:
+        InputError: the folder cannot be made.
+    """
     try:
         folder.mkdir(parents=True, exist_ok=True)
     except OSError as error:
@@ -60,6 +104,14 @@ def made(folder: Path, remedy: str) -> Path:
 
 
 def write_text(path: Path, text: str) -> None:
-    """Write UTF-8 text atomically."""
-    with atomic(path) as part:
+    """Write a text file in UTF-8, completely or not at all.
+
+    Args:
+        path: the file to write.
+        text: its content.
+
+    Raises:
+        InputError: `path` is a folder.
+    """
+    with write_atomically(path) as part:
         part.write_text(text, encoding="utf-8")

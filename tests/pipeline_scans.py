@@ -7,7 +7,7 @@ import torch
 from scipy.spatial.transform import Rotation
 
 from skinnet.appearance.colour import SkinColour
-from skinnet.images.photograph import linear_to_srgb, to_uint8
+from skinnet.images import linear_to_srgb, to_uint8
 from skinnet.mesh.mesh import Mesh
 from skinnet.mesh.mesh_file import write_mesh
 from skinnet.shape._default_model import default_model

@@ -12,7 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 from skimage.data import astronaut
 
-from skinnet.inference.onnx_model import GLOBALS, MAPS, open_model, shipped_model
+from skinnet.inference import CAPTURE_NAMES, MAP_NAMES, SHIPPED_ENCODER, open_model
 
 GOLDEN = Path(__file__).parents[1] / "tests" / "golden.json"
 PLACES = ((20, 30), (45, 38), (50, 52), (60, 45), (66, 50), (90, 20))
@@ -27,16 +27,16 @@ def photograph() -> NDArray[np.uint8]:
 def numbers(outputs: Mapping[str, NDArray[np.float32]]) -> dict[str, list[float]]:
     """Mean, spread and some pixels of each map [1, height, width, ...], and every global."""
     found = {}
-    for name in (*MAPS, "mask"):
+    for name in (*MAP_NAMES, "mask"):
         value = outputs[name][0].astype(np.float64)
         pixels = np.ravel([value[place] for place in PLACES])
         found[name] = [float(value.mean()), float(value.std()), *map(float, pixels)]
-    return found | {name: np.ravel(outputs[name]).tolist() for name in GLOBALS}
+    return found | {name: np.ravel(outputs[name]).tolist() for name in CAPTURE_NAMES}
 
 
 def main() -> None:
     """Write the golden file from the shipped ONNX."""
-    outputs = open_model(shipped_model(), "encoder", 1).run({"image": photograph()})
+    outputs = open_model(SHIPPED_ENCODER, "encoder", 1).run({"image": photograph()})
     rounded = {
         name: [float(f"{value:.6g}") for value in values]
         for name, values in numbers(outputs).items()

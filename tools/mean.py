@@ -15,7 +15,7 @@ import torch
 from torch import Tensor
 
 from skinnet.errors import InputError
-from skinnet.files import atomic
+from skinnet.files import write_atomically
 from skinnet.network.checkpoint import checkpoint_of, load_checkpoint
 
 
@@ -46,7 +46,7 @@ def main(arguments: list[str] | None = None) -> int:
         if not given.output.parent.is_dir():
             raise InputError(f"{given.output.parent} is not a folder; make it first.")
         checkpoint = mean(given.earlier, given.later)
-        with atomic(given.output) as path:
+        with write_atomically(given.output) as path:
             torch.save(checkpoint, path)
     except (InputError, OSError) as error:
         print(error, file=sys.stderr)

@@ -17,8 +17,16 @@ from torch.utils.data import DataLoader, Dataset
 
 from skinnet.errors import InputError
 from skinnet.files import write_text
-from skinnet.images.faces import crop_box, find_face, resize, skin_mask
-from skinnet.images.photograph import linear_to_srgb, read_photo, srgb_to_linear, to_uint8
+from skinnet.images import (
+    find_face,
+    frame_head,
+    linear_to_srgb,
+    read_photo,
+    resize,
+    segment_skin,
+    srgb_to_linear,
+    to_uint8,
+)
 from train.batch import Batch
 from train.guards import listed
 from train.stream import StreamLoader, seen_samples
@@ -263,8 +271,8 @@ def _crop(path: Path, size: int) -> Crop | Skipped:
     face = find_face(photo)
     if face is None:
         return Skipped(path, "No face was found in it.", readable=True)
-    box = crop_box(face, photo.shape[1], photo.shape[0])
-    mask = skin_mask(photo, face)[box.slices]
+    box = frame_head(face, photo.shape[1], photo.shape[0])
+    mask = segment_skin(photo, face)[box.slices]
     scale = size / max(box.width, box.height)
     width, height = max(1, round(box.width * scale)), max(1, round(box.height * scale))
     pad = ((0, size - height), (0, size - width))

@@ -15,7 +15,7 @@ from skinnet._version import __version__
 from skinnet.appearance._principal import PrincipalComponents
 from skinnet.appearance.colour import SkinColour
 from skinnet.errors import InputError
-from skinnet.files import atomic
+from skinnet.files import write_atomically
 
 FORMAT = 1
 """Version of the files' contents."""
@@ -92,7 +92,7 @@ def write_arrays(path: Path, kind: str, header: dict[str, Any], arrays: dict[str
         raise InputError(f"{path} does not end in .npz, as models' files do.")
     header = {"kind": kind, "format": FORMAT, "skinnet": __version__} | header
     try:
-        with atomic(path) as part:
+        with write_atomically(path) as part:
             np.savez(part, header=np.array(json.dumps(header)), **arrays)
     except OSError as error:
         raise InputError(f"{path} cannot be written ({error.strerror}); check the path.") from error

@@ -1,73 +1,77 @@
-"""Faces in a photograph: find one, crop around it, and mark its skin."""
+"""Faces in a photograph: detect one and place a square around its head."""
 
 from functools import cache
-from typing import Any, NamedTuple, TypeVar
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
-from PIL import Image
 from skimage import data
 from skimage.feature import Cascade
 
-from skinnet.images.skin_segmentation import skin_likeness
-
-SEARCH_SIZE = 320
-"""Longer side, in pixels, of the picture in which faces are sought."""
+from skinnet.images.box import Box
+from skinnet.images.resizing import resize
 
 HEAD_CENTRE = 0.45
-"""Middle between the hair's top and the chin, in heights of the face's box from its top."""
+"""Height of the head's centre, half-way from the top of the hair to the chin, below the top of the
+face's box, in heights of that box."""
+
+_DETECTION_SIZE = 320
+"""Longer side, in pixels, of the picture in which faces are detected."""
 
 _PASSES = ((0.12, 1.1, 4), (0.25, 1.05, 3))
-"""Smallest face relative to the shorter side, step between scales, and detections that must agree;
-the second, for large faces only, runs if the first finds none."""
-
-Pixels = TypeVar("Pixels", NDArray[np.uint8], NDArray[np.float32])
-
-
-class Box(NamedTuple):
-    """A rectangle of pixels; `right` and `bottom` are the first ones outside."""
-
-    left: int
-    top: int
-    right: int
-    bottom: int
-
-    @property
-    def width(self) -> int:
-        """Pixels from left to right."""
-        return self.right - self.left
-
-    @property
-    def height(self) -> int:
-        """Pixels from top to bottom."""
-        return self.bottom - self.top
-
-    @property
-    def slices(self) -> tuple[slice, slice]:
-        """Rows and columns of an array [H, W, ...]."""
-        return slice(self.top, self.bottom), slice(self.left, self.right)
+"""Smallest face relative to the shorter side, ratio of successive scales, and number of detections
+that must agree. The second pass, for large faces only, runs if the first one finds none."""
 
 
 def find_face(photo: NDArray[np.uint8]) -> Box | None:
-    """The largest, most central upright frontal face of uint8 sRGB [H, W, 3], brow to chin.
+    """Find the largest and most central face that is upright and frontal.
 
-    The box is square and may reach over the picture's edge by a rounding. None if there is no face
-    of at least an eighth of the shorter side. A face is found again in the mirror; most of what
-    only looks like one to the detector is not.
+    A detection must be confirmed in the mirrored picture, which rejects most false ones.
+
+    Args:
+        photo: uint8 sRGB [H, W, 3].
+
+    Returns:
+        A square box from the brows to the chin, which may exceed the photograph by a rounding; None
+        if there is no face of at least an eighth of the shorter side.
+
+    Source:
+        Cascade of local binary patterns (Liao et al. 2007), as scikit-image ships it.
+
+    Example:
+        >>> from skimage.data import astronaut
+        >>> face = find_face(astronaut())
+        >>> 80 < face.width < 100, 170 < face.left < 180, 60 < face.top < 80
+        (True, True, True)
     """
-    small, ratio = _shrink(photo, SEARCH_SIZE)
+    ratio = max(max(photo.shape[:2]) / _DETECTION_SIZE, 0.5)  # enlarge by 2 at most
+    height, width = (max(1, round(side / ratio)) for side in photo.shape[:2])
+    small = resize(photo, width, height)
     for smallest, step, agreeing in _PASSES:
-        found = _detect(small, smallest * min(small.shape[:2]), step, agreeing)
-        faces = [face for face in found if _in_mirror(small, face)]
+        detected = _detect(small, smallest * min(small.shape[:2]), step, agreeing)
+        faces = [face for face in detected if _confirm_in_mirror(small, face)]
         if faces:
-            return _to_box(max(faces, key=lambda face: _merit(face, small.shape)), ratio)
+            best = max(faces, key=lambda face: _score(face, small.shape))
+            return _to_box(best, ratio)
     return None
 
 
-def crop_box(face: Box, width: int, height: int, margin: float = 2.0) -> Box:
-    """The square of `margin` times the face's side around the head, clipped to the picture.
+def frame_head(face: Box, width: int, height: int, margin: float = 2.0) -> Box:
+    """Place a square around the head, and clip it to the photograph.
 
-    From a margin of 1.4 on, hair and chin of an upright head are inside.
+    Args:
+        face: the face's box, from the brows to the chin.
+        width: columns of the photograph.
+        height: rows of the photograph.
+        margin: side of the square in sides of the face's box; at 1.4 or more, hair and chin of an
+            upright head are inside.
+
+    Returns:
+        The square, or the part of it that is inside the photograph.
+
+    Example:
+        >>> frame_head(Box(40, 40, 60, 60), 100, 100)
+        Box(left=30, top=29, right=70, bottom=69)
     """
     half = margin * max(face.width, face.height) / 2
     x = (face.left + face.right) / 2
@@ -80,57 +84,20 @@ def crop_box(face: Box, width: int, height: int, margin: float = 2.0) -> Box:
     )
 
 
-def skin_mask(photo: NDArray[np.uint8], face: Box) -> NDArray[np.float32]:
-    """How surely each pixel is skin of this face, float32 [H, W] in [0, 1].
-
-    Pseudo ground truth for training on photographs: a colour model of the cheeks and the nose,
-    within an ellipse around the face and a strip for the neck. Eyes, brows, hair, beard and lips
-    drop out where their colour differs.
-    """
-    height, width = photo.shape[:2]
-    around = crop_box(face, width, height, margin=2.4)
-    mask = np.zeros((height, width), np.float32)
-    if min(around.width, around.height) < 1:
-        return mask
-    crop = photo[around.slices]
-    small, ratio = _shrink(crop, round(96 * max(crop.shape[:2]) / face.width), enlarge=True)
-    inside = [(value - start) / ratio for value, start in zip(face, around[:2] * 2, strict=True)]
-    likeness = skin_likeness(small, (inside[0], inside[1], inside[2], inside[3]))
-    mask[around.slices] = resize(likeness, crop.shape[1], crop.shape[0]).clip(0, 1)
-    return mask
-
-
-def resize(channel: Pixels, width: int, height: int) -> Pixels:
-    """Bilinear resizing of uint8 [H, W, 3] or float32 [H, W], averaging where it shrinks."""
-    image = Image.fromarray(np.ascontiguousarray(channel))
-    return np.array(image.resize((width, height), Image.Resampling.BILINEAR, reducing_gap=3.0))
-
-
-def _shrink(
-    photo: NDArray[np.uint8], longer: int, enlarge: bool = False
-) -> tuple[NDArray[np.uint8], float]:
-    """The photograph with that longer side, and original pixels per pixel of it."""
-    height, width = photo.shape[:2]
-    ratio = max(height, width) / longer
-    if ratio < 1 and not enlarge:
-        ratio = max(ratio, 0.5)
-    return resize(photo, max(1, round(width / ratio)), max(1, round(height / ratio))), ratio
-
-
 def _detect(
     small: NDArray[np.uint8], smallest: float, step: float, agreeing: int
 ) -> list[dict[str, int]]:
-    """Squares (r, c, width, height) that look like faces, of `smallest` pixels a side or more."""
+    """Detect squares (r, c, width, height) that look like faces, at least `smallest` pixels wide."""
     least, most = max(24, round(smallest)), min(small.shape[:2])
     if most < least:
         return []
-    found: list[dict[str, int]] = _cascade().detect_multi_scale(
+    detected: list[dict[str, int]] = _load_cascade().detect_multi_scale(
         small, step, 1, (least, least), (most, most), min_neighbor_number=agreeing
     )
-    return found
+    return detected
 
 
-def _in_mirror(small: NDArray[np.uint8], face: dict[str, int]) -> bool:
+def _confirm_in_mirror(small: NDArray[np.uint8], face: dict[str, int]) -> bool:
     top, left, side = face["r"], face["c"], face["width"]
     edge = round(0.35 * side)
     rows = slice(max(0, top - edge), top + side + edge)
@@ -139,13 +106,13 @@ def _in_mirror(small: NDArray[np.uint8], face: dict[str, int]) -> bool:
     return bool(_detect(mirrored, 0.7 * side, 1.05, 3))
 
 
-def _merit(face: dict[str, int], shape: tuple[int, ...]) -> float:
-    """Size of a detection, halved at the picture's corner."""
-    away = np.hypot(
+def _score(face: dict[str, int], shape: tuple[int, ...]) -> float:
+    """Width of a detection, times a weight that falls to one half at the picture's corners."""
+    distance = np.hypot(
         (face["r"] + face["height"] / 2) / shape[0] - 0.5,
         (face["c"] + face["width"] / 2) / shape[1] - 0.5,
     )
-    return float(face["width"] * (1 - away / np.sqrt(2)))
+    return float(face["width"] * (1 - distance / np.sqrt(2)))
 
 
 def _to_box(face: dict[str, int], ratio: float) -> Box:
@@ -154,5 +121,5 @@ def _to_box(face: dict[str, int], ratio: float) -> Box:
 
 
 @cache
-def _cascade() -> Any:
+def _load_cascade() -> Any:
     return Cascade(data.lbp_frontal_face_cascade_filename())  # type: ignore[no-untyped-call]

@@ -1,4 +1,4 @@
-"""A colour model of one face's skin, learnt from its cheeks and nose."""
+"""Skin segmentation by a colour model of one face, learnt from its cheeks, nose and forehead."""
 
 from typing import Any
 
@@ -6,105 +6,145 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy import ndimage
 
-from skinnet.images.photograph import srgb_to_linear
+from skinnet.images.box import Box
+from skinnet.images.faces import frame_head
+from skinnet.images.resizing import resize
+from skinnet.images.srgb import LUMINANCE_WEIGHTS, srgb_to_linear
 
-Rectangle = tuple[float, float, float, float]
+_FACE_SIZE = 96
+"""Width of the face, in pixels, at which skin is segmented."""
+
+_Rectangle = tuple[float, float, float, float]
 """Left, top, right, bottom, in pixels or in sides of the face's box."""
 
-_SEEDS: tuple[Rectangle, ...] = (
+_SEEDS: tuple[_Rectangle, ...] = (
     (0.18, 0.50, 0.38, 0.70),
     (0.62, 0.50, 0.82, 0.70),
     (0.42, 0.40, 0.58, 0.62),
     (0.35, 0.10, 0.65, 0.22),
 )
-"""Both cheeks, the nose, and the forehead, which the trimming drops where hair hides it."""
+"""Both cheeks, the nose, and the forehead; where hair hides it, its pixels are outliers."""
 
-_FLOOR = np.diag([0.06, 0.07, 0.32]) ** 2
-"""Least variance of log R/G, log B/G and log luminance: shading and noise of an even skin."""
+_MIN_COVARIANCE = np.diag([0.06, 0.07, 0.32]) ** 2
+"""Least covariance of log R/G, log B/G and log luminance: shading and noise of even skin."""
 
-_GLOSS = (0.0, 0.15, 0.3, 0.45, 0.6)
-"""Shares of a pixel's least channel that are tried as white gloss."""
+_SPECULAR_SHARES = (0.0, 0.15, 0.3, 0.45, 0.6)
+"""Shares of a pixel's darkest channel that are tried as white specular reflection."""
 
 
-def skin_likeness(crop: NDArray[np.uint8], face: Rectangle) -> NDArray[np.float32]:
-    """Likeness to the skin of the face in uint8 sRGB [H, W, 3], float32 [H, W] in [0, 1].
+def segment_skin(photo: NDArray[np.uint8], face: Box) -> NDArray[np.float32]:
+    """Segment the skin of one face: the pseudo ground truth for training on photographs.
 
-    `face` is the face's box in pixels of the crop, some 100 of them wide.
+    The colour model is applied inside an ellipse around the head and a rectangle for the neck.
+    Eyes, brows, hair, beard and lips are left out where their colours differ from the skin's.
+
+    Args:
+        photo: uint8 sRGB [H, W, 3].
+        face: the face's box, from the brows to the chin, as `find_face` gives it.
+
+    Returns:
+        Probability of skin, float32 [H, W] in [0, 1].
+
+    Example:
+        >>> from skimage.data import astronaut
+        >>> mask = segment_skin(astronaut(), Box(176, 71, 268, 163))
+        >>> bool(mask[125, 224] > 0.8), bool(mask[300, 200] < 0.2)  # nose, suit
+        (True, True)
     """
+    height, width = photo.shape[:2]
+    around = frame_head(face, width, height, margin=2.4)
+    mask = np.zeros((height, width), np.float32)
+    if min(around.width, around.height) < 1:
+        return mask
+    crop = photo[around.slices]
+    longer = max(crop.shape[:2])
+    ratio = longer / round(_FACE_SIZE * longer / face.width)
+    small = resize(crop, max(1, round(around.width / ratio)), max(1, round(around.height / ratio)))
+    inside = [(value - start) / ratio for value, start in zip(face, around[:2] * 2, strict=True)]
+    probability = _segment(small, (inside[0], inside[1], inside[2], inside[3]))
+    mask[around.slices] = resize(probability, around.width, around.height).clip(0, 1)
+    return mask
+
+
+def _segment(crop: NDArray[np.uint8], face: _Rectangle) -> NDArray[np.float32]:
+    """Probability of skin in uint8 sRGB [h, w, 3]; `face` is the face's box in its pixels."""
     linear = srgb_to_linear(crop) + 1e-3
     linear = ndimage.gaussian_filter(linear, (1, 1, 0))
     x, y = _face_coordinates(crop.shape[:2], face)
-    seeds = np.any([_within(x, y, seed) for seed in _SEEDS], 0)
+    seeds = np.any([_select(x, y, seed) for seed in _SEEDS], 0)
     if not seeds.any():
         return np.zeros(crop.shape[:2], np.float32)
-    centre, covariance = _robust_normal(_features(linear)[seeds])
-    distance = _distance(linear, centre, covariance)
-    # Lips and teeth differ from skin by little but redness: at the mouth, less of that passes.
+    mean, covariance = _fit_normal(_features(linear)[seeds])
+    distance = _mahalanobis(linear, mean, covariance)
+    # Lips and teeth differ from skin mostly in redness, so at the mouth less deviation is allowed.
     mouth = np.exp(-(((x - 0.5) / 0.22) ** 4) - ((y - 0.82) / 0.08) ** 4)
-    redness = np.abs(_features(linear)[..., 0] - centre[0]) / 0.05
-    score = _falling(distance, 3.2, 0.35) * _falling(redness * mouth, 2.0, 0.3)
-    score = score * _place(x, y)
-    return _tidy(score)
+    redness = np.abs(_features(linear)[..., 0] - mean[0]) / 0.05
+    score = _step_down(distance, 3.2, 0.35) * _step_down(redness * mouth, 2.0, 0.3)
+    score = score * _head_and_neck(x, y)
+    return _clean(score)
 
 
 def _features(linear: NDArray[Any]) -> NDArray[Any]:
     """log R/G, log B/G and log luminance of linear sRGB."""
     red, green, blue = np.moveaxis(np.log(linear), -1, 0)
-    return np.stack([red - green, blue - green, np.log(linear @ [0.2126, 0.7152, 0.0722])], -1)
+    return np.stack([red - green, blue - green, np.log(linear @ LUMINANCE_WEIGHTS)], -1)
 
 
-def _robust_normal(samples: NDArray[Any]) -> tuple[NDArray[Any], NDArray[Any]]:
-    """Mean and covariance after dropping what lies far out, three times."""
+def _fit_normal(samples: NDArray[Any]) -> tuple[NDArray[Any], NDArray[Any]]:
+    """Mean and covariance of the samples; outliers are removed three times."""
     luminance = samples[:, 2]
-    middle = np.quantile(luminance, 0.5, method="lower")  # one of them, so that some are kept
+    middle = np.quantile(luminance, 0.5, method="lower")  # a sample's own, so that some are kept
     kept = samples[np.abs(luminance - middle) < 1.0]
     for _ in range(3):
-        covariance = np.cov(kept.T, ddof=0) + _FLOOR
-        away = samples - np.median(kept, 0)
-        near = np.einsum("ni,ij,nj->n", away, np.linalg.inv(covariance), away) < 7
-        kept = samples[near] if near.any() else kept
-    return kept.mean(0), np.cov(kept.T, ddof=0) + _FLOOR
+        covariance = np.cov(kept.T, ddof=0) + _MIN_COVARIANCE
+        difference = samples - np.median(kept, 0)
+        square = np.einsum("ni,ij,nj->n", difference, np.linalg.inv(covariance), difference)
+        kept = samples[square < 7] if (square < 7).any() else kept
+    return kept.mean(0), np.cov(kept.T, ddof=0) + _MIN_COVARIANCE
 
 
-def _distance(linear: NDArray[Any], centre: NDArray[Any], covariance: NDArray[Any]) -> NDArray[Any]:
-    """Mahalanobis distance to the skin, with or without some gloss on bright pixels."""
+def _mahalanobis(linear: NDArray[Any], mean: NDArray[Any], covariance: NDArray[Any]) -> NDArray[Any]:
+    """Mahalanobis distance to the skin; bright pixels may have a specular part."""
     inverse = np.linalg.inv(covariance)
     best = np.full(linear.shape[:2], np.inf)
-    bright = _features(linear)[..., 2] > centre[2]
-    for share in _GLOSS:
-        away = _features(linear - share * linear.min(-1, keepdims=True)) - centre
-        square = np.einsum("hwi,ij,hwj->hw", away, inverse, away)
+    bright = _features(linear)[..., 2] > mean[2]
+    for share in _SPECULAR_SHARES:
+        difference = _features(linear - share * linear.min(-1, keepdims=True)) - mean
+        square = np.einsum("hwi,ij,hwj->hw", difference, inverse, difference)
         best = np.minimum(best, np.where(bright | (share == 0), square, np.inf))
     distance: NDArray[Any] = np.sqrt(best)
     return distance
 
 
-def _face_coordinates(shape: tuple[int, ...], face: Rectangle) -> tuple[NDArray[Any], NDArray[Any]]:
+def _face_coordinates(
+    shape: tuple[int, ...], face: _Rectangle
+) -> tuple[NDArray[Any], NDArray[Any]]:
+    """Coordinates of pixel centres in sides of the face's box."""
     rows, columns = np.mgrid[: shape[0], : shape[1]] + 0.5
     left, top, right, bottom = face
     return (columns - left) / (right - left), (rows - top) / (bottom - top)
 
 
-def _within(x: NDArray[Any], y: NDArray[Any], area: Rectangle) -> NDArray[np.bool_]:
+def _select(x: NDArray[Any], y: NDArray[Any], area: _Rectangle) -> NDArray[np.bool_]:
     left, top, right, bottom = area
     inside: NDArray[np.bool_] = (x > left) & (x < right) & (y > top) & (y < bottom)
     return inside
 
 
-def _falling(value: NDArray[Any], middle: float, width: float) -> NDArray[Any]:
-    """One below `middle`, zero above it."""
+def _step_down(value: NDArray[Any], middle: float, width: float) -> NDArray[Any]:
+    """A smooth step from 1 below `middle` to 0 above it."""
     return 1 / (1 + np.exp(np.clip((value - middle) / width, -30, 30)))
 
 
-def _place(x: NDArray[Any], y: NDArray[Any]) -> NDArray[Any]:
-    """An ellipse that holds the head, and a strip for the neck."""
+def _head_and_neck(x: NDArray[Any], y: NDArray[Any]) -> NDArray[Any]:
+    """An ellipse around the head and a rectangle for the neck, with soft edges."""
     head = np.hypot((x - 0.5) / 0.72, (y - 0.47) / 0.85)
     neck = np.maximum(np.abs(x - 0.5) / 0.42, np.abs(y - 1.15) / 0.4)
-    return _falling(np.minimum(head, neck), 1.0, 0.03)
+    return _step_down(np.minimum(head, neck), 1.0, 0.03)
 
 
-def _tidy(score: NDArray[Any]) -> NDArray[np.float32]:
-    """The large pieces, without crumbs and pinholes, with soft edges."""
+def _clean(score: NDArray[Any]) -> NDArray[np.float32]:
+    """Keep the large connected parts, close their holes, and soften the edges."""
     solid = ndimage.binary_opening(score > 0.5, iterations=2)
     labels, count = ndimage.label(solid)
     if count == 0:

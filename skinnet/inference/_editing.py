@@ -4,8 +4,9 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy import ndimage
 
-from skinnet.images.faces import Box, resize
-from skinnet.images.photograph import linear_to_srgb, srgb_to_linear, to_uint8
+from skinnet.images.box import Box
+from skinnet.images.resizing import resize
+from skinnet.images.srgb import linear_to_srgb, srgb_to_linear, to_uint8
 
 UNTOUCHED, WHOLLY = 0.25, 0.75
 """Masks between which an edit sets in; pixels below the first keep their exact values."""

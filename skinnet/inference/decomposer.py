@@ -10,19 +10,22 @@ from numpy.typing import NDArray
 from PIL import Image
 
 from skinnet.errors import InputError, NoFaceError
-from skinnet.images.faces import Box, crop_box, find_face, resize
-from skinnet.images.photograph import as_photo, srgb_to_linear, to_uint8
+from skinnet.images.box import Box
+from skinnet.images.faces import find_face, frame_head
+from skinnet.images.photograph import as_photo
+from skinnet.images.resizing import resize
+from skinnet.images.srgb import srgb_to_linear, to_uint8
 from skinnet.inference._editing import apply_gain, colour_gain, edge_fade
 from skinnet.inference.decomposition import Decomposition
 from skinnet.inference.full_resolution._colour_table import tabulate
 from skinnet.inference.full_resolution._layers import Layers, sharpen
 from skinnet.inference.onnx_model import (
-    GLOBALS,
-    MAPS,
-    ModelFile,
-    decoder_path,
+    CAPTURE_NAMES,
+    MAP_NAMES,
+    SHIPPED_ENCODER,
+    OnnxModel,
+    get_decoder_path,
     open_model,
-    shipped_model,
 )
 
 __all__ = ["Decomposer", "Decomposition"]
@@ -31,7 +34,7 @@ MAX_FACTOR = 10.0
 """Largest factor of a pigment in an edit."""
 
 _LEAST_SIDE = 16
-_DECODED = (*MAPS, *GLOBALS)
+_DECODED = (*MAP_NAMES, *CAPTURE_NAMES)
 
 ImageLike = str | Path | Image.Image | NDArray[Any]
 
@@ -47,18 +50,18 @@ class Decomposer:
     def __init__(self, model: str | Path | None = None, threads: int | None = None):
         if threads is not None and threads < 1:
             raise InputError(f"threads is at least 1, or None for all cores; got {threads}.")
-        self.path = shipped_model() if model is None else Path(model)
+        self.path = SHIPPED_ENCODER if model is None else Path(model)
         self.threads = threads
 
     @cached_property
-    def encoder(self) -> ModelFile:
+    def encoder(self) -> OnnxModel:
         """The network from photographs to maps."""
         return open_model(self.path, "encoder", self.threads)
 
     @cached_property
-    def decoder(self) -> ModelFile:
+    def decoder(self) -> OnnxModel:
         """The skin model from maps to photographs."""
-        return open_model(decoder_path(self.path), "decoder", self.threads)
+        return open_model(get_decoder_path(self.path), "decoder", self.threads)
 
     def load(self) -> None:
         """Open both files now. Raises `InputError` if one cannot be used."""
@@ -84,7 +87,7 @@ class Decomposer:
         decoded = self._decode(codes)
         reconstruction = photo.copy()
         reconstruction[box.slices] = resize(to_uint8(decoded), box.width, box.height)
-        maps = {name: _place(codes[name][0], photo, box) for name in (*MAPS, "mask")}
+        maps = {name: _place(codes[name][0], photo, box) for name in (*MAP_NAMES, "mask")}
         if detail and max(box.width, box.height) > self.encoder.working_size:
             self._sharpen(photo, box, codes, maps | {"reconstruction": reconstruction})
         return Decomposition(
@@ -142,10 +145,10 @@ class Decomposer:
         codes: dict[str, NDArray[np.float32]],
         full: dict[str, NDArray[Any]],
     ) -> None:
-        tops = {name: self.encoder.outputs[name].range[1] for name in MAPS}
+        tops = {name: self.encoder.outputs[name].range[1] for name in MAP_NAMES}
         table = tabulate(self.decoder, codes, (tops["melanin"], tops["hemoglobin"]))
         layers = Layers(**{name: values[box.slices] for name, values in full.items()})
-        maps = {name: codes[name][0] for name in (*MAPS, "mask")}
+        maps = {name: codes[name][0] for name in (*MAP_NAMES, "mask")}
         sharpen(layers, photo[box.slices], maps, table, tops["shading"], self.threads)
 
     def _gain(
@@ -182,7 +185,7 @@ def _look_at(photo: NDArray[np.uint8], whole_image: bool, name: str) -> Box:
             f"No face was found in {name}; a frontal, upright one is looked for. --whole-image "
             "(in Python whole_image=True) goes on without one."
         )
-    return crop_box(face, width, height)
+    return frame_head(face, width, height)
 
 
 def _name(image: ImageLike) -> str:

@@ -8,8 +8,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from skinnet._version import __version__
-from skinnet.images.faces import Box
-from skinnet.inference.onnx_model import Output
+from skinnet.images.box import Box
+from skinnet.inference.onnx_model import OutputInfo
 
 SKIN = 0.5
 """Least mask of what is counted as skin."""
@@ -44,7 +44,7 @@ class Decomposition:
     camera: dict[str, Any]
     reconstruction: NDArray[np.uint8]
     box: Box
-    outputs: Mapping[str, Output]
+    outputs: Mapping[str, OutputInfo]
     model: dict[str, str]
 
     def maps(self) -> dict[str, NDArray[np.float32]]:
@@ -53,7 +53,7 @@ class Decomposition:
         channels = {f"offset_{name}": self.offset[..., i] for i, name in enumerate("rgb")}
         return {name: getattr(self, name) for name in names} | channels
 
-    def output(self, name: str) -> Output:
+    def output(self, name: str) -> OutputInfo:
         """Unit, range and description of a map of `maps()`."""
         return self.outputs[name.removesuffix("_r").removesuffix("_g").removesuffix("_b")]
 

@@ -13,13 +13,16 @@ from onnxruntime.capi import onnxruntime_pybind11_state as ort_errors
 
 from skinnet.errors import InputError
 
-FORMAT = "1"
+ONNX_FORMAT = "1"
 """Version of the contract between the files and this code."""
 
-MAPS = ("melanin", "hemoglobin", "shading", "specular", "offset")
-GLOBALS = ("light", "temperature", "camera", "white_balance")
-_INPUTS = {"encoder": {"image"}, "decoder": {*MAPS, *GLOBALS}}
-_OUTPUTS = {"encoder": {*MAPS, *GLOBALS, "mask"}, "decoder": {"image"}}
+SHIPPED_ENCODER = Path(__file__).parent / "models" / "skin.onnx"
+"""The encoder that comes with the package; its decoder has its place in the same folder."""
+
+MAP_NAMES = ("melanin", "hemoglobin", "shading", "specular", "offset")
+CAPTURE_NAMES = ("light", "temperature", "camera", "white_balance")
+_INPUTS = {"encoder": {"image"}, "decoder": {*MAP_NAMES, *CAPTURE_NAMES}}
+_OUTPUTS = {"encoder": {*MAP_NAMES, *CAPTURE_NAMES, "mask"}, "decoder": {"image"}}
 _REMEDY = "give a file made by `python -m export`, or leave --model out"
 _REFUSED = (
     *(ort_errors.Fail, ort_errors.InvalidArgument, ort_errors.InvalidGraph),
@@ -28,7 +31,7 @@ _REFUSED = (
 )
 
 
-class Output(NamedTuple):
+class OutputInfo(NamedTuple):
     """What an output means: its unit, its least and greatest value, and a line about it."""
 
     unit: str
@@ -37,7 +40,7 @@ class Output(NamedTuple):
 
 
 @dataclass(frozen=True)
-class ModelFile:
+class OnnxModel:
     """An open ONNX file of the project, with the metadata that is needed to use it."""
 
     path: Path
@@ -46,7 +49,7 @@ class ModelFile:
     trained_on: str
     working_size: int
     lights: tuple[str, ...]
-    outputs: Mapping[str, Output]
+    outputs: Mapping[str, OutputInfo]
 
     def run(self, inputs: Mapping[str, NDArray[Any]]) -> dict[str, NDArray[np.float32]]:
         """Outputs by name. Raises `InputError` if the network cannot take these inputs."""
@@ -58,17 +61,12 @@ class ModelFile:
         return dict(zip(names, values, strict=True))
 
 
-def shipped_model() -> Path:
-    """The encoder inside the package; its decoder lies beside it."""
-    return Path(__file__).parent / "models" / "skin.onnx"
-
-
-def decoder_path(encoder: Path) -> Path:
+def get_decoder_path(encoder: Path) -> Path:
     """The decoder beside an encoder: X.decoder.onnx beside X.onnx."""
     return encoder.with_name(f"{encoder.stem}.decoder.onnx")
 
 
-def open_model(path: Path, kind: str, threads: int | None = None) -> ModelFile:
+def open_model(path: Path, kind: str, threads: int | None = None) -> OnnxModel:
     """Open an encoder or a decoder (`kind`), run on `threads` threads (None: all cores).
 
     Raises `InputError` if the file is missing, damaged, not the project's, of another format, or of
@@ -97,10 +95,10 @@ def _check(
     found = notes.get("skinnet.kind")
     if found is None:
         raise InputError(f"{path} is an ONNX file, but not one of skinnet's; {_REMEDY}.")
-    if notes.get("skinnet.format") != FORMAT:
+    if notes.get("skinnet.format") != ONNX_FORMAT:
         raise InputError(
             f"{path} has format {notes.get('skinnet.format')}, and this skinnet reads format "
-            f"{FORMAT}; export it again, or install the skinnet that made it."
+            f"{ONNX_FORMAT}; export it again, or install the skinnet that made it."
         )
     if found != kind:
         raise InputError(f"{path} is {_a(found)}, and {_a(kind)} is wanted; {_REMEDY}.")
@@ -115,14 +113,14 @@ def _check(
 
 def _described(
     path: Path, session: onnxruntime.InferenceSession, notes: Mapping[str, str]
-) -> ModelFile:
+) -> OnnxModel:
     try:
         notes_on = json.loads(notes["skinnet.outputs"])
-        named = (*MAPS, "mask") if notes["skinnet.kind"] == "encoder" else ()
+        named = (*MAP_NAMES, "mask") if notes["skinnet.kind"] == "encoder" else ()
         size = int(notes["skinnet.working_size"])
         if size < 1:
             raise ValueError(f"working size {size}")
-        return ModelFile(
+        return OnnxModel(
             path,
             session,
             notes["skinnet.version"],
@@ -135,9 +133,9 @@ def _described(
         raise InputError(f"The metadata of {path} is damaged ({error!r}); {_REMEDY}.") from error
 
 
-def _output(note: Mapping[str, Any]) -> Output:
+def _output(note: Mapping[str, Any]) -> OutputInfo:
     low, high = note["range"]
-    return Output(str(note["unit"]), (float(low), float(high)), str(note["description"]))
+    return OutputInfo(str(note["unit"]), (float(low), float(high)), str(note["description"]))
 
 
 def _a(kind: str) -> str:

@@ -7,8 +7,8 @@ import numpy as np
 from numpy.typing import NDArray
 from PIL import Image, ImageDraw, ImageFont
 
-from skinnet.images.faces import resize
-from skinnet.images.photograph import to_uint8
+from skinnet.images.resizing import resize
+from skinnet.images.srgb import to_uint8
 from skinnet.inference.decomposition import SKIN, Decomposition
 
 TILE = 300
@@ -30,26 +30,26 @@ _PIGMENTS: dict[str, tuple[str, Anchors]] = {
 }
 
 
-def panel(photo: NDArray[np.uint8], decomposition: Decomposition) -> NDArray[np.uint8]:
+def draw_panel(photo: NDArray[np.uint8], decomposition: Decomposition) -> NDArray[np.uint8]:
     """The box of a photograph and of its decomposition in a 4 x 2 grid, uint8 sRGB [h, w, 3].
 
     `photo` is the uint8 sRGB [H, W, 3] that was decomposed. Melanin and hemoglobin are shown where
     there is skin, each on a scale from zero to a round number above nearly all of its values.
     """
     tiles = (
-        picture("photograph", photo[decomposition.box.slices]),
+        draw_picture("photograph", photo[decomposition.box.slices]),
         pigment(decomposition, "melanin"),
         pigment(decomposition, "hemoglobin"),
         _plain_map(decomposition, "shading", "relative to the light", _GREY),
-        picture("reconstruction", decomposition.reconstruction[decomposition.box.slices]),
+        draw_picture("reconstruction", decomposition.reconstruction[decomposition.box.slices]),
         _plain_map(decomposition, "specular", "relative to the light", _GLOSS),
         _plain_map(decomposition, "mask", "how surely skin", _GREY),
         _offset(decomposition),
     )
-    return sheet(tiles, 4)
+    return draw_grid(tiles, 4)
 
 
-def sheet(tiles: Sequence[Image.Image], columns: int) -> NDArray[np.uint8]:
+def draw_grid(tiles: Sequence[Image.Image], columns: int) -> NDArray[np.uint8]:
     """Tiles in rows of that many, uint8 sRGB [h, w, 3]."""
     paper = Image.new("RGB", _corner(columns, math.ceil(len(tiles) / columns)), _PAPER)
     for index, tile in enumerate(tiles):
@@ -66,7 +66,7 @@ def colour_map(values: NDArray[np.floating], anchors: Anchors) -> NDArray[np.uin
     return colours
 
 
-def round_top(value: float) -> float:
+def round_up(value: float) -> float:
     """The least of 1, 1.5, 2, 3, 4, 5, 6, 8 times a power of ten that is at least `value`."""
     if not value > 1e-6:
         return 1e-6
@@ -81,10 +81,10 @@ def _corner(column: int, row: int) -> tuple[int, int]:
 def pigment(decomposition: Decomposition, name: str) -> Image.Image:
     """A tile of `melanin` or `hemoglobin` on skin, with its scale."""
     values = decomposition.maps()[name][decomposition.box.slices]
-    return pigment_map(name, values, decomposition.mask[decomposition.box.slices])
+    return draw_pigment_map(name, values, decomposition.mask[decomposition.box.slices])
 
 
-def pigment_map(
+def draw_pigment_map(
     name: str,
     values: NDArray[np.floating],
     mask: NDArray[np.floating],
@@ -95,10 +95,10 @@ def pigment_map(
 
     The scale ends at `top`, or at a round number above nearly all values.
     """
-    return mapped(caption or name, values, mask, *_PIGMENTS[name], top)
+    return _draw_map(caption or name, values, mask, *_PIGMENTS[name], top)
 
 
-def mapped(
+def _draw_map(
     caption: str,
     values: NDArray[np.floating],
     mask: NDArray[np.floating],
@@ -128,10 +128,10 @@ def _offset(decomposition: Decomposition) -> Image.Image:
 
 
 def _top(values: NDArray[np.floating]) -> float:
-    return round_top(float(np.percentile(values, 99))) if values.size else 1.0
+    return round_up(float(np.percentile(values, 99))) if values.size else 1.0
 
 
-def picture(caption: str, pixels: NDArray[np.uint8]) -> Image.Image:
+def draw_picture(caption: str, pixels: NDArray[np.uint8]) -> Image.Image:
     """A tile of a picture, uint8 sRGB [h, w, 3]."""
     return _tile(caption, pixels)
 

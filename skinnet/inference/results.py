@@ -9,10 +9,10 @@ from numpy.typing import NDArray
 from PIL import Image
 
 from skinnet.errors import InputError
-from skinnet.files import atomic, write_text, written_together
+from skinnet.files import write_atomically, write_text, write_together
 from skinnet.images.photograph import write_png
 from skinnet.inference.decomposition import Decomposition
-from skinnet.inference.panel import panel
+from skinnet.inference.panel import draw_panel
 
 PICTURES = (".png", ".jpg", ".jpeg")
 """Suffixes under which an edited photograph is written."""
@@ -34,8 +34,8 @@ def write_results(
     """
     try:
         folder.mkdir(parents=True, exist_ok=True)
-        with written_together() as beside:
-            write_png(beside(folder / f"{stem}_panel.png"), panel(photo, decomposition))
+        with write_together() as beside:
+            write_png(beside(folder / f"{stem}_panel.png"), draw_panel(photo, decomposition))
             picture = decomposition.reconstruction
             write_png(beside(folder / f"{stem}_reconstruction.png"), picture)
             for name, values in decomposition.maps().items():
@@ -49,17 +49,17 @@ def write_results(
     return len(decomposition.maps()) + 3
 
 
-def write_picture(path: Path, photo: NDArray[np.uint8]) -> None:
+def _write_picture(path: Path, photo: NDArray[np.uint8]) -> None:
     """Write uint8 sRGB [H, W, 3] as PNG or JPEG, by the suffix, atomically.
 
     Raises `InputError` for another suffix, and where the file cannot be written.
     """
-    check_suffix(path)
+    _check_suffix(path)
     try:
         if path.suffix.lower() == ".png":
             write_png(path, photo)
         else:
-            with atomic(path) as part:
+            with write_atomically(path) as part:
                 Image.fromarray(photo).save(part, "JPEG", quality=95, subsampling=0)
     except OSError as error:
         raise InputError(
@@ -67,7 +67,7 @@ def write_picture(path: Path, photo: NDArray[np.uint8]) -> None:
         ) from error
 
 
-def check_suffix(path: Path) -> None:
+def _check_suffix(path: Path) -> None:
     """Raise `InputError` unless the suffix is that of a picture that can be written."""
     if path.suffix.lower() not in PICTURES:
         raise InputError(f"{path} has to end in {', '.join(PICTURES)}; got {path.suffix!r}.")

@@ -12,7 +12,7 @@ from trimesh.visual import TextureVisuals
 from trimesh.visual.material import PBRMaterial
 
 from skinnet.errors import InputError
-from skinnet.files import BROKEN
+from skinnet.files import READ_ERRORS
 from skinnet.mesh._texture_file import Texture, decode_texture
 
 MESH_SUFFIXES = (".obj", ".ply", ".glb", ".gltf", ".stl")
@@ -47,7 +47,7 @@ def read_parts(path: Path) -> list[MeshPart]:
     scene = _load_scene(path)
     try:
         geometries = [_place(scene, node) for node in scene.graph.nodes_geometry]
-    except BROKEN as error:
+    except READ_ERRORS as error:
         raise _unreadable(path, error) from error
     solid = [each for each in geometries if isinstance(each, trimesh.Trimesh) and len(each.faces)]
     if not solid:
@@ -92,7 +92,7 @@ def _load_scene(path: Path) -> Any:
         with warnings.catch_warnings():
             warnings.simplefilter("ignore")
             return trimesh.load_scene(path, file_type=kind[1:], process=False)
-    except BROKEN as error:
+    except READ_ERRORS as error:
         raise _unreadable(path, error) from error
 
 

@@ -8,9 +8,8 @@ from jaxtyping import UInt8
 from PIL import Image
 
 from skinnet.errors import InputError
-from skinnet.files import BROKEN
-from skinnet.images._decode import to_srgb
-from skinnet.images.photograph import FORMATS, MAX_PIXELS, SUFFIXES
+from skinnet.files import READ_ERRORS
+from skinnet.images._decode import MAX_PIXELS, PHOTO_FORMATS, PHOTO_SUFFIXES, to_srgb
 
 Texture = UInt8[np.ndarray, "_ _ 3"]
 
@@ -28,10 +27,12 @@ def read_texture(path: Path) -> Texture:
     try:
         with warnings.catch_warnings():
             warnings.simplefilter("ignore")
-            image = Image.open(path, formats=[known for known in FORMATS if known in Image.OPEN])
+            image = Image.open(
+                path, formats=[known for known in PHOTO_FORMATS if known in Image.OPEN]
+            )
     except FileNotFoundError:
         raise InputError(f"There is no texture {path}; check the path.") from None
-    except (Image.DecompressionBombError, *BROKEN) as error:
+    except (Image.DecompressionBombError, *READ_ERRORS) as error:
         raise InputError(f"{path} is not a picture that can be read as a texture.") from error
     with image:
         return decode_texture(image, str(path))
@@ -51,13 +52,15 @@ def decode_texture(image: Image.Image, name: str) -> Texture:
             return np.array(to_srgb(image, name))
     except InputError:
         raise
-    except (Image.DecompressionBombError, *BROKEN) as error:
+    except (Image.DecompressionBombError, *READ_ERRORS) as error:
         raise InputError(f"{name} is damaged or cut short ({error}); copy it again.") from error
 
 
 def find_texture_beside(path: Path) -> Path | None:
     """Find the picture with the mesh's name in its folder, else the only picture there."""
-    pictures = sorted(p for p in path.absolute().parent.iterdir() if p.suffix.lower() in SUFFIXES)
+    pictures = sorted(
+        p for p in path.absolute().parent.iterdir() if p.suffix.lower() in PHOTO_SUFFIXES
+    )
     named = [picture for picture in pictures if picture.stem == path.stem]
     if len(named) == 1:
         return named[0]

@@ -6,7 +6,7 @@ import numpy as np
 from PIL import Image
 
 from skinnet.errors import InputError
-from skinnet.files import written_together
+from skinnet.files import write_together
 from skinnet.mesh._mesh_parts import MeshPart, concatenate, read_obj_positions, read_parts
 from skinnet.mesh._seams import merge_coordinates, merge_vertices
 from skinnet.mesh._texture_atlas import pack_atlas
@@ -85,7 +85,7 @@ def write_mesh(path: Path, mesh: Mesh) -> None:
     if path.suffix.lower() not in writers:
         raise InputError(f"Meshes are written as .obj or .ply; got {path}.")
     picture = path.with_suffix(".png")
-    with written_together() as beside:
+    with write_together() as beside:
         beside(path).write_bytes(writers[path.suffix.lower()](path, mesh))
         if mesh.texture is not None and mesh.uv is not None:
             Image.fromarray(mesh.texture).save(beside(picture), "PNG")

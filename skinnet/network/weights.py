@@ -12,7 +12,7 @@ from torch import Tensor
 
 from skinnet._version import __version__
 from skinnet.errors import InputError
-from skinnet.files import atomic
+from skinnet.files import write_atomically
 from skinnet.network.autoencoder import FORMAT, AutoencoderConfig, SkinAutoencoder
 
 KIND = "autoencoder"
@@ -29,7 +29,7 @@ def save_weights(model: SkinAutoencoder, path: str | Path, trained_on: str) -> N
         "skinnet.trained_on": trained_on,
     }
     state = {name: value.detach().cpu().contiguous() for name, value in model.state_dict().items()}
-    with atomic(Path(path)) as part:
+    with write_atomically(Path(path)) as part:
         part.write_bytes(save(state, metadata))
 
 

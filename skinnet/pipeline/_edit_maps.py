@@ -10,7 +10,7 @@ from skinnet.appearance.edit import PigmentEdit, edit_texture
 from skinnet.appearance.maps_file import load_maps, save_maps
 from skinnet.appearance.skin_texture import SkinTexture
 from skinnet.images.photograph import read_photo, write_png
-from skinnet.inference.panel import picture, round_top, sheet
+from skinnet.inference.panel import draw_grid, draw_picture, round_up
 from skinnet.mesh.mesh_file import read_mesh, write_mesh
 from skinnet.pipeline._build_model import MAPS
 from skinnet.pipeline._maps_writer import covered, pigment_tiles, shown, textured
@@ -61,7 +61,7 @@ def run(config: Namespace) -> int:
     write_png(stem.with_name(f"{stem.name}_albedo.png"), albedo)
     tops = (_top(before, after, "f_mel"), _top(before, after, "f_blood"))
     rows = [
-        [picture(f"albedo {when}", shown(one.albedo(colour), one)), *pigment_tiles(one, tops)]
+        [draw_picture(f"albedo {when}", shown(one.albedo(colour), one)), *pigment_tiles(one, tops)]
         for when, one in (("before", before), ("after", after))
     ]
     mesh = config.maps.with_name(f"{name}_face.obj")
@@ -72,10 +72,10 @@ def run(config: Namespace) -> int:
         write_png(stem.with_name(f"{stem.name}_render.png"), pictures[1])
         write_mesh(stem.with_name(f"{stem.name}_face.obj"), textured(face, albedo))
         for row, rendered in zip(rows, pictures, strict=True):
-            row.append(picture("relit", rendered))
+            row.append(draw_picture("relit", rendered))
     else:
         log(f"There is no {mesh} to render on; the albedo alone is written.")
-    panel = sheet([tile for row in rows for tile in row], len(rows[0]))
+    panel = draw_grid([tile for row in rows for tile in row], len(rows[0]))
     write_png(stem.with_name(f"{stem.name}_panel.png"), panel)
     print(f"{config.maps}: {stem}_maps.npz, _albedo.png, _panel.png", flush=True)
     return 0
@@ -87,4 +87,4 @@ def _mask(path: Path | None) -> Float[np.ndarray, "h w"] | None:
 
 def _top(before: SkinTexture, after: SkinTexture, name: str) -> float:
     values = [np.percentile(getattr(one, name)[one.mask], 99) for one in (before, after)]
-    return round_top(float(max(values)))
+    return round_up(float(max(values)))

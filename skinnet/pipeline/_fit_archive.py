@@ -8,7 +8,7 @@ import numpy as np
 
 from skinnet.appearance._model_arrays import READ_ERRORS
 from skinnet.errors import InputError
-from skinnet.files import atomic
+from skinnet.files import write_atomically
 from skinnet.shape._icp import StageRecord
 from skinnet.shape.registration import Registration
 from skinnet.shape.similarity import Similarity
@@ -20,7 +20,7 @@ def save_fit(path: Path, found: Registration) -> None:
     """Write a fit as .npz of plain arrays, whole or not at all."""
     stages = json.dumps([asdict(stage) for stage in found.record])
     arrays = {name: getattr(found, name) for name in _ARRAYS}
-    with atomic(path) as part:
+    with write_atomically(path) as part:
         np.savez(
             part,
             rotation=found.pose.rotation,

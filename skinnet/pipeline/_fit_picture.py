@@ -3,7 +3,7 @@
 import numpy as np
 from jaxtyping import Float, UInt8
 
-from skinnet.inference.panel import TILE, mapped, picture, sheet
+from skinnet.inference.panel import TILE, _draw_map, draw_grid, draw_picture
 from skinnet.mesh.mesh import Mesh
 from skinnet.render.lights import DirectionalLight, SphericalHarmonics
 from skinnet.render.rendering import render
@@ -28,9 +28,9 @@ def fit_sheet(scan: Mesh, model: Mesh, found: Registration) -> UInt8[np.ndarray,
     distance = np.zeros(buffers.hit.shape)
     distance[buffers.hit] = (found.distances[corners] * buffers.barycentric).sum(1)
     tiles = (
-        picture("scan", plaster(scan, view)),
-        picture("fitted model", plaster(model, view)),
-        mapped(
+        draw_picture("scan", plaster(scan, view)),
+        draw_picture("fitted model", plaster(model, view)),
+        _draw_map(
             "distance to the scan",
             distance,
             buffers.hit.astype(np.float64),
@@ -39,7 +39,7 @@ def fit_sheet(scan: Mesh, model: Mesh, found: Registration) -> UInt8[np.ndarray,
             DISTANCE_TOP,
         ),
     )
-    return sheet(tiles, len(tiles))
+    return draw_grid(tiles, len(tiles))
 
 
 def plaster(mesh: Mesh, view: PerspectiveView) -> UInt8[np.ndarray, "height width 3"]:

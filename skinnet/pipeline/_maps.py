@@ -12,7 +12,7 @@ from jsonargparse import ArgumentParser, Namespace
 
 from skinnet.appearance.skin_texture import SkinTexture
 from skinnet.errors import InputError
-from skinnet.files import atomic
+from skinnet.files import write_atomically
 from skinnet.pipeline._fit_shape import Fitted, fitted
 from skinnet.pipeline._maps_writer import ENDS, write_maps
 from skinnet.pipeline._progress import digest, finished, log, write_record
@@ -124,7 +124,7 @@ def warped(fit: Fitted, model: ShapeModel, space: TextureSpace, settings: WarpSe
             f"{fit.scan.path}: no texel of the model lies within {settings.limit:g} mm of the "
             f"scan; look at {fit.stem}_shape.png."
         )
-    with atomic(file) as part:
+    with write_atomically(file) as part:
         np.savez(part, image=made.image, mask=made.mask)
     write_record(record, fingerprint, {"covered": float(covered)})
     log(f"{fit.scan.path}: {covered:.0%} of the model's texels are covered by the scan.")

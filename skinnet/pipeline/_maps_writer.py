@@ -10,8 +10,9 @@ from skinnet.appearance.colour import SkinColour
 from skinnet.appearance.edit import PigmentEdit, edit_texture
 from skinnet.appearance.maps_file import save_maps
 from skinnet.appearance.skin_texture import SkinTexture
-from skinnet.images.photograph import linear_to_srgb, to_uint8, write_png
-from skinnet.inference.panel import BLANK, TILE, picture, pigment_map, sheet
+from skinnet.images.photograph import write_png
+from skinnet.images.srgb import linear_to_srgb, to_uint8
+from skinnet.inference.panel import BLANK, TILE, draw_grid, draw_picture, draw_pigment_map
 from skinnet.mesh.mesh import Mesh
 from skinnet.mesh.mesh_file import write_mesh
 from skinnet.pipeline.relight import RelightSettings
@@ -84,15 +85,15 @@ def maps_panel(texture: SkinTexture, colour: SkinColour, face: Mesh) -> UInt8[np
         texture.f_mel, texture.f_blood, np.zeros_like(texture.offset), texture.mask, texture.name
     )
     tiles = [
-        picture("texture", shown(texture.albedo(colour), texture)),
+        draw_picture("texture", shown(texture.albedo(colour), texture)),
         *pigment_tiles(texture),
-        picture("skin without offset", shown(plain.albedo(colour), texture)),
+        draw_picture("skin without offset", shown(plain.albedo(colour), texture)),
         *(
-            picture(name, relight.picture(face, covered(one.albedo(colour), one)))
+            draw_picture(name, relight.picture(face, covered(one.albedo(colour), one)))
             for name, one in faces.items()
         ),
     ]
-    return sheet(tiles, 4)
+    return draw_grid(tiles, 4)
 
 
 def pigment_tiles(
@@ -101,6 +102,6 @@ def pigment_tiles(
     """Tiles of melanin and hemoglobin."""
     mask = texture.mask.astype(np.float64)
     return [
-        pigment_map("melanin", texture.f_mel, mask, tops[0]),
-        pigment_map("hemoglobin", texture.f_blood, mask, tops[1]),
+        draw_pigment_map("melanin", texture.f_mel, mask, tops[0]),
+        draw_pigment_map("hemoglobin", texture.f_blood, mask, tops[1]),
     ]

@@ -17,9 +17,9 @@ from skinnet.appearance.hybrid import HybridModel
 from skinnet.appearance.linear import LinearModel
 from skinnet.appearance.measures import Curve, Measures
 from skinnet.errors import InputError
-from skinnet.files import atomic
-from skinnet.images.photograph import linear_to_srgb, to_uint8
-from skinnet.inference.panel import BLANK, picture, pigment_map, round_top, sheet
+from skinnet.files import write_atomically
+from skinnet.images.srgb import linear_to_srgb, to_uint8
+from skinnet.inference.panel import BLANK, draw_grid, draw_picture, draw_pigment_map, round_up
 
 Renderer = Callable[[Float32[np.ndarray, "size size 3"]], UInt8[np.ndarray, "height width 3"]]
 """A picture, uint8 sRGB, of a linear RGB albedo: of the mean shape that wears it, for instance."""
@@ -47,7 +47,7 @@ def write_measures(path: Path, measures: Sequence[Measures]) -> None:
         (axes[1, -1], "shape_specificity", "(f) specificity of shape", f"{distance}, mm"),
     )[: 4 if shapes else 2]:
         _draw(axis, measures, partial(_mean, field), title, label)
-    with atomic(path) as part:
+    with write_atomically(path) as part:
         figure.savefig(part, format="png", dpi=110)
 
 
@@ -96,7 +96,9 @@ def hybrid_sheet(
     textures = [model.texture(beta) for beta in betas]
     melanin = _pigments("melanin", captions, [face.f_mel for face in textures], model.mask)
     blood = _pigments("hemoglobin", captions, [face.f_blood for face in textures], model.mask)
-    return sheet([*melanin, *blood, *_appearances(model, captions, betas, renderer)], len(betas))
+    return draw_grid(
+        [*melanin, *blood, *_appearances(model, captions, betas, renderer)], len(betas)
+    )
 
 
 def linear_sheet(
@@ -107,7 +109,7 @@ def linear_sheet(
 ) -> UInt8[np.ndarray, "height width 3"]:
     """The mean and the first components of a linear model at -/+ some deviations, uint8 sRGB."""
     captions, betas = _corners(model, deviations, components)
-    return sheet(_appearances(model, captions, betas, renderer), len(betas))
+    return draw_grid(_appearances(model, captions, betas, renderer), len(betas))
 
 
 def _corners(
@@ -133,10 +135,10 @@ def _pigments(
     mask: Bool[np.ndarray, "size size"],
 ) -> list[Image.Image]:
     """Tiles of one pigment on one scale, so that they can be compared."""
-    top = round_top(float(np.percentile([values[mask] for values in maps], 99)))
+    top = round_up(float(np.percentile([values[mask] for values in maps], 99)))
     share = mask.astype(np.float64)
     return [
-        pigment_map(name, values, share, top, caption)
+        draw_pigment_map(name, values, share, top, caption)
         for caption, values in zip(captions, maps, strict=True)
     ]
 
@@ -151,7 +153,7 @@ def _appearances(
     for caption, beta in zip(captions, betas, strict=True):
         albedo = model.reconstruct(beta)
         shown = renderer(albedo) if renderer else _flat(albedo, model.mask)
-        pictures.append(picture(caption, shown))
+        pictures.append(draw_picture(caption, shown))
     return pictures
 
 

@@ -9,8 +9,9 @@ from PIL import Image
 from skinnet.appearance.hybrid import HybridModel
 from skinnet.appearance.maps_file import save_maps
 from skinnet.errors import InputError
-from skinnet.images.photograph import linear_to_srgb, to_uint8, write_png
-from skinnet.inference.panel import picture, pigment_map, round_top, sheet
+from skinnet.images.photograph import write_png
+from skinnet.images.srgb import linear_to_srgb, to_uint8
+from skinnet.inference.panel import draw_grid, draw_picture, draw_pigment_map, round_up
 from skinnet.pipeline._build_model import FOLDER
 from skinnet.pipeline.command import add_output, output_folder
 
@@ -39,7 +40,7 @@ def run(config: Namespace) -> int:
     betas = config.spread * model.sample(config.count, config.seed)
     textures = [model.texture(beta, f"sample {i:02}") for i, beta in enumerate(betas)]
     tops = [
-        round_top(max(float(np.percentile(getattr(one, name)[one.mask], 99)) for one in textures))
+        round_up(max(float(np.percentile(getattr(one, name)[one.mask], 99)) for one in textures))
         for name in ("f_mel", "f_blood")
     ]
     rows: list[list[Image.Image]] = [[], [], []]
@@ -51,10 +52,12 @@ def run(config: Namespace) -> int:
         save_maps(stem.with_name(f"{stem.name}_maps.npz"), texture, model.colour)
         write_png(stem.with_name(f"{stem.name}_albedo.png"), shown)
         mask = texture.mask.astype(np.float64)
-        rows[0].append(pigment_map("melanin", texture.f_mel, mask, tops[0]))
-        rows[1].append(pigment_map("hemoglobin", texture.f_blood, mask, tops[1]))
-        rows[2].append(picture(f"albedo {number:02}", shown))
-    write_png(output / "samples.png", sheet([tile for row in rows for tile in row], config.count))
+        rows[0].append(draw_pigment_map("melanin", texture.f_mel, mask, tops[0]))
+        rows[1].append(draw_pigment_map("hemoglobin", texture.f_blood, mask, tops[1]))
+        rows[2].append(draw_picture(f"albedo {number:02}", shown))
+    write_png(
+        output / "samples.png", draw_grid([tile for row in rows for tile in row], config.count)
+    )
     print(
         f"{output}: {config.count} faces, {model.clamped(betas):.2%} of their texels clipped to a "
         "fraction in [0, 1]; sample_*_maps.npz, sample_*_albedo.png, samples.png",

@@ -15,7 +15,7 @@ from skinnet.appearance.colour import SkinColour
 from skinnet.calibration.calibrate import calibrate
 from skinnet.calibration.exposure import exposure
 from skinnet.errors import InputError
-from skinnet.images.photograph import srgb_to_linear
+from skinnet.images.srgb import srgb_to_linear
 from skinnet.physics.inversion import SkinInverse
 from skinnet.physics.optics import SkinOptics
 from skinnet.physics.reflectance import SkinReflectance

@@ -7,7 +7,7 @@ from typing import Any
 
 from jsonargparse import ArgumentParser, Namespace
 
-from skinnet.files import made
+from skinnet.files import make_folder
 from skinnet.pipeline.sentence_parser import SentenceParser
 
 
@@ -26,7 +26,7 @@ def run_verb(verb: str, arguments: Sequence[str], help_: str) -> int:
 
 def output_folder(folder: Path) -> Path:
     """The folder that a verb writes into, made if needed."""
-    return made(folder, "choose another folder with -o")
+    return make_folder(folder, "choose another folder with -o")
 
 
 def add_output(parser: ArgumentParser, default: str) -> None:

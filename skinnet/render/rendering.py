@@ -5,7 +5,7 @@ from collections.abc import Sequence
 import numpy as np
 from jaxtyping import Float, Shaped, UInt8
 
-from skinnet.images.photograph import linear_to_srgb, to_uint8
+from skinnet.images.srgb import linear_to_srgb, to_uint8
 from skinnet.mesh.mesh import Mesh
 from skinnet.render._shading import shade
 from skinnet.render.lights import Light

@@ -17,7 +17,7 @@ from scipy.io.matlab import MatReadError
 from scipy.spatial import cKDTree
 
 from skinnet.errors import InputError
-from skinnet.files import BROKEN
+from skinnet.files import READ_ERRORS
 from skinnet.mesh._orientation import is_inside_out
 from skinnet.shape.model import ShapeModel, checked_model
 
@@ -53,7 +53,7 @@ def load_basel_2009(path: Path) -> ShapeModel:
     try:
         arrays = loadmat(path, variable_names=names)
         mean, modes, deviations, triangles = (np.asarray(arrays[name]) for name in names)
-    except (MatReadError, *BROKEN) as error:
+    except (MatReadError, *READ_ERRORS) as error:
         raise InputError(
             f"{path} is no Basel Face Model of 2009, whose .mat holds {', '.join(names)} "
             f"({error!r}); give 01_MorphableModel.mat."
@@ -78,7 +78,7 @@ def load_basel_2017(path: Path) -> ShapeModel:
             )
             cells = np.asarray(file["shape/representer/cells"]).astype(np.int64)
             marks = _marks(file)
-    except BROKEN as error:
+    except READ_ERRORS as error:
         raise InputError(
             f"{path} is no Basel Face Model of 2017 or 2019, whose .h5 holds shape/model/mean, "
             f"pcaBasis, pcaVariance and shape/representer/cells ({error!r})."

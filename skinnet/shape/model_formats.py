@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 
 from skinnet.errors import InputError
-from skinnet.files import BROKEN, atomic
+from skinnet.files import READ_ERRORS, write_atomically
 from skinnet.mesh._mesh_parts import MESH_SUFFIXES
 from skinnet.shape._basel import load_basel_2009, load_basel_2017
 from skinnet.shape._default_model import default_model
@@ -65,7 +65,7 @@ def save_shape_model(path: Path, model: ShapeModel) -> None:
     }
     if model.uv is not None and model.uv_triangles is not None:
         arrays |= {"uv": model.uv, "uv_triangles": model.uv_triangles}
-    with atomic(path) as part:
+    with write_atomically(path) as part:
         np.savez(part, **arrays)
 
 
@@ -101,7 +101,7 @@ def _from_npz(path: Path) -> ShapeModel:
     try:
         with path.open("rb") as stream, np.load(stream, allow_pickle=False) as file:
             arrays = {name: file[name] for name in file.files if not name.startswith("expr_")}
-    except (zipfile.BadZipFile, *BROKEN) as error:
+    except (zipfile.BadZipFile, *READ_ERRORS) as error:
         raise InputError(
             f"{path} is no .npz of plain arrays, or is cut short ({error}); copy it again."
         ) from error

@@ -6,7 +6,7 @@ import numpy as np
 from jaxtyping import Bool, Float, Int
 
 from skinnet.errors import InputError
-from skinnet.images.photograph import srgb_to_linear
+from skinnet.images.srgb import srgb_to_linear
 from skinnet.mesh._topology import boundary, label_components, weld
 from skinnet.mesh._vectors import normalise
 from skinnet.mesh.closest_point import ClosestPoints, TriangleTree

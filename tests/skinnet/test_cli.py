@@ -177,7 +177,7 @@ def test_empty_standard_input_is_said(
     assert main([verb, "-", "--model", str(model_file)]) == 2
     assert (
         capsys.readouterr().err
-        == "skinnet: standard input is empty (0 bytes); was it copied whole?\n"
+        == "skinnet: standard input is empty (0 bytes); was it copied completely?\n"
     )
 
 

@@ -13,7 +13,7 @@ from skimage.data import astronaut
 from torch.utils.data import DataLoader
 
 from skinnet.errors import InputError
-from skinnet.images.photograph import srgb_to_linear
+from skinnet.images import srgb_to_linear
 from skinnet.network.checkpoint import read_checkpoint
 from train.callbacks import LastCheckpoint, PictureGrid
 from train.cli import main

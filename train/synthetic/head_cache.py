@@ -12,7 +12,7 @@ from zipfile import BadZipFile
 
 import numpy as np
 
-from skinnet.files import atomic, made
+from skinnet.files import make_folder, write_atomically
 from train.synthetic.head_cast import Buffers, cast
 from train.synthetic.heads import ict_head, procedural_head
 from train.synthetic.ict_model import IctHead, load_ict_head
@@ -53,7 +53,7 @@ def geometry(
     was. With the file `ict` of ICT-FaceKit most heads are of it, otherwise all are procedural.
     """
     settings = Settings(size, seed, "procedural" if ict is None else _fingerprint(ict), VERSION)
-    place = made(folder / settings.key, "give another folder for the geometry")
+    place = make_folder(folder / settings.key, "give another folder for the geometry")
     stack = _empty(count, size)
     missing = [i for i in range(count) if not _fill(stack, i, _file(place, split, i), settings)]
     jobs = [(place, settings, split, index, ict) for index in missing]
@@ -105,7 +105,7 @@ def _file(place: Path, split: str, index: int) -> Path:
 
 
 def _write(path: Path, cast_: Buffers, settings: Settings) -> None:
-    with atomic(path) as part:
+    with write_atomically(path) as part:
         np.savez(part, settings=json.dumps(asdict(settings)), **cast_._asdict())
 
 

@@ -8,7 +8,7 @@ import numpy as np
 from jaxtyping import Float16
 
 from skinnet.errors import InputError
-from skinnet.files import atomic
+from skinnet.files import write_atomically
 from train.synthetic.scene_sampling import CHART, Lot
 
 WORN = 0.5
@@ -37,7 +37,7 @@ def save_skins(path: Path, skins: Skins) -> None:
         raise InputError(f"{path} does not end in .npz, as files of skins do.")
     try:
         path.parent.mkdir(parents=True, exist_ok=True)
-        with atomic(path) as part:
+        with write_atomically(path) as part:
             np.savez_compressed(part, **skins._asdict())
     except OSError as error:
         raise InputError(f"{path} cannot be written ({error.strerror}); check the path.") from error

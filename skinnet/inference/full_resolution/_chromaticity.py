@@ -8,8 +8,8 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy import ndimage
 
-from skinnet.images.faces import resize
-from skinnet.images.photograph import srgb_to_linear
+from skinnet.images.resizing import resize
+from skinnet.images.srgb import srgb_to_linear
 from skinnet.inference._editing import UNTOUCHED, WHOLLY
 
 QUANTISED = 0.0015

@@ -5,8 +5,8 @@ from collections.abc import Mapping
 import numpy as np
 from numpy.typing import NDArray
 
-from skinnet.images.photograph import srgb_to_linear
-from skinnet.inference.onnx_model import GLOBALS, ModelFile
+from skinnet.images.srgb import srgb_to_linear
+from skinnet.inference.onnx_model import CAPTURE_NAMES, OnnxModel
 
 NODES = (192, 128)
 """Nodes in melanin and hemoglobin; colours between them are within 2e-4 of the decoder's."""
@@ -73,7 +73,7 @@ class ColourTable:
 
 
 def tabulate(
-    decoder: ModelFile, codes: Mapping[str, NDArray[np.float32]], top: tuple[float, float]
+    decoder: OnnxModel, codes: Mapping[str, NDArray[np.float32]], top: tuple[float, float]
 ) -> ColourTable:
     """The table for the light and camera of one photograph's `codes`, up to the fractions `top`."""
     axes = [
@@ -88,7 +88,7 @@ def tabulate(
         "specular": np.zeros_like(melanin),
         "offset": np.zeros((*melanin.shape, 3), np.float32),
     }
-    image = decoder.run(bare | {name: codes[name] for name in GLOBALS})["image"][0]
+    image = decoder.run(bare | {name: codes[name] for name in CAPTURE_NAMES})["image"][0]
     return ColourTable(srgb_to_linear(image) / np.float32(_DIM), top)
 
 

@@ -8,8 +8,8 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from skinnet.images.faces import resize
-from skinnet.images.photograph import linear_to_srgb, srgb_to_linear, to_uint8
+from skinnet.images.resizing import resize
+from skinnet.images.srgb import linear_to_srgb, srgb_to_linear, to_uint8
 from skinnet.inference.full_resolution._chromaticity import soft_mask
 from skinnet.inference.full_resolution._colour_table import ColourTable
 from skinnet.inference.full_resolution._detail import pigment_detail

@@ -8,8 +8,7 @@ from hypothesis import strategies as st
 from hypothesis.extra import numpy as hnp
 from skimage import data
 
-from skinnet.images.faces import Box, crop_box, find_face, resize, skin_mask
-from skinnet.images.photograph import as_photo, read_photo
+from skinnet.images import Box, as_photo, find_face, frame_head, read_photo, resize, segment_skin
 
 FACE = Box(176, 71, 268, 163)
 
@@ -61,18 +60,18 @@ def test_no_face_is_seen_in_noise(side: int) -> None:
 
 
 def test_the_crop_is_square_and_holds_the_head() -> None:
-    crop = crop_box(FACE, 512, 512)
+    crop = frame_head(FACE, 512, 512)
     assert crop.width == crop.height == 184
     # Hair starts a fifth of a face above the box, and the chin ends just under it.
     assert crop.top < FACE.top - 0.2 * 92 and crop.bottom > FACE.bottom + 0.1 * 92
 
 
 def test_the_crop_stays_inside_the_picture() -> None:
-    assert crop_box(Box(-3, -2, 90, 91), 100, 80) == Box(0, 0, 100, 80)
+    assert frame_head(Box(-3, -2, 90, 91), 100, 80) == Box(0, 0, 100, 80)
 
 
 def test_skin_is_skin_and_the_rest_is_not(astronaut: np.ndarray) -> None:
-    mask = skin_mask(astronaut, FACE)
+    mask = segment_skin(astronaut, FACE)
     assert mask.shape == (512, 512) and mask.dtype == np.float32
     assert mask.min() >= 0 and mask.max() <= 1
     cheeks_and_nose = [(135, 200), (135, 245), (125, 224), (90, 210)]
@@ -83,8 +82,8 @@ def test_skin_is_skin_and_the_rest_is_not(astronaut: np.ndarray) -> None:
 
 def test_the_mask_follows_the_picture_mirrored(astronaut: np.ndarray) -> None:
     mirrored = Box(512 - FACE.right, FACE.top, 512 - FACE.left, FACE.bottom)
-    there = skin_mask(astronaut[:, ::-1], mirrored)[:, ::-1]
-    assert np.abs(there - skin_mask(astronaut, FACE)).mean() < 0.01
+    there = segment_skin(astronaut[:, ::-1], mirrored)[:, ::-1]
+    assert np.abs(there - segment_skin(astronaut, FACE)).mean() < 0.01
 
 
 @given(
@@ -94,7 +93,7 @@ def test_the_mask_follows_the_picture_mirrored(astronaut: np.ndarray) -> None:
     side=st.integers(1, 50),
 )
 def test_a_mask_is_made_of_anything(photo: np.ndarray, left: int, top: int, side: int) -> None:
-    mask = skin_mask(photo, Box(left, top, left + side, top + side))
+    mask = segment_skin(photo, Box(left, top, left + side, top + side))
     assert mask.shape == photo.shape[:2]
     assert mask.min() >= 0 and mask.max() <= 1
 
@@ -117,7 +116,7 @@ def test_masks_hold_the_cheeks_and_neither_eyes_nor_mouth(shared_data: Path) -> 
         photo = read_photo(path)
         face = find_face(photo)
         assert face is not None, path.name
-        mask = skin_mask(photo, face)
+        mask = segment_skin(photo, face)
         landmarks = np.loadtxt(path.with_suffix(".tem"), skiprows=1, max_rows=189).astype(int)
         at = {index: mask[landmarks[index, 1], landmarks[index, 0]] for index in range(189)}
         assert min(at[index] for index in cheeks) > 0.9, path.name

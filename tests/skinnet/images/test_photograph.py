@@ -11,15 +11,8 @@ from hypothesis.extra import numpy as hnp
 from PIL import Image, ImageCms
 
 from skinnet.errors import InputError
-from skinnet.files import atomic, write_text, written_together
-from skinnet.images import photograph as images
-from skinnet.images.photograph import (
-    as_photo,
-    linear_to_srgb,
-    read_photo,
-    srgb_to_linear,
-    write_png,
-)
+from skinnet.files import write_atomically, write_text, write_together
+from skinnet.images import _decode, as_photo, linear_to_srgb, read_photo, srgb_to_linear, write_png
 
 
 def photograph(height: int = 5, width: int = 7) -> np.ndarray:
@@ -248,7 +241,7 @@ def test_other_arrays_are_refused(array: np.ndarray, words: str) -> None:
 
 
 def test_large_arrays_are_refused(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(images, "MAX_PIXELS", 8)
+    monkeypatch.setattr(_decode, "MAX_PIXELS", 8)
     with pytest.raises(InputError, match="3 x 3, more pixels than the limit of 8"):
         as_photo(np.zeros((3, 3), np.uint8))
 
@@ -330,7 +323,7 @@ def test_png_refuses_other_arrays(tmp_path: Path) -> None:
 def test_a_failed_write_leaves_what_was_there(tmp_path: Path) -> None:
     path = tmp_path / "a.txt"
     write_text(path, "old")
-    with pytest.raises(RuntimeError), atomic(path) as part:
+    with pytest.raises(RuntimeError), write_atomically(path) as part:
         part.write_text("ne")
         raise RuntimeError
     assert [file.read_text() for file in tmp_path.iterdir()] == ["old"]
@@ -338,10 +331,10 @@ def test_a_failed_write_leaves_what_was_there(tmp_path: Path) -> None:
 
 def test_files_appear_together_or_not_at_all(tmp_path: Path) -> None:
     (tmp_path / "b").mkdir()
-    with pytest.raises(InputError, match="b is a folder"), written_together() as beside:
+    with pytest.raises(InputError, match="b is a folder"), write_together() as beside:
         beside(tmp_path / "a").write_text("a")
         beside(tmp_path / "b").write_text("b")
-    with pytest.raises(FileNotFoundError), written_together() as beside:
+    with pytest.raises(FileNotFoundError), write_together() as beside:
         beside(tmp_path / "c").write_text("c")
         beside(tmp_path / "d")  # never written, so that its renaming fails
     assert [file.name for file in tmp_path.iterdir()] == ["b"]

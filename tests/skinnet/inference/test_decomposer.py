@@ -11,11 +11,9 @@ from PIL import Image
 
 from skinnet import Decomposer, Decomposition, __version__
 from skinnet.errors import InputError, NoFaceError
-from skinnet.images.faces import Box
-from skinnet.images.photograph import srgb_to_linear
+from skinnet.images import Box, srgb_to_linear
+from skinnet.inference import draw_panel, open_model, round_up
 from skinnet.inference._editing import apply_gain, colour_gain, edge_fade
-from skinnet.inference.onnx_model import open_model
-from skinnet.inference.panel import panel, round_top
 
 SaveModel = Callable[..., Path]
 
@@ -95,7 +93,7 @@ def test_without_skin_the_numbers_are_none(skinless_file: Path, astronaut: np.nd
     summary = decomposition.summary()
     assert summary["skin_share"] == 0
     assert summary["maps"]["hemoglobin"]["mean"] is None
-    assert panel(astronaut, decomposition).dtype == np.uint8
+    assert draw_panel(astronaut, decomposition).dtype == np.uint8
     np.testing.assert_array_equal(Decomposer(skinless_file).edit(astronaut, 3.0), astronaut)
 
 
@@ -260,7 +258,7 @@ def test_bad_arrays_are_value_errors(decomposer: Decomposer, image: np.ndarray) 
 def test_the_panel_shows_eight_pictures(
     decomposition: Decomposition, astronaut: np.ndarray
 ) -> None:
-    picture = panel(astronaut, decomposition)
+    picture = draw_panel(astronaut, decomposition)
     assert picture.shape == (806, 1290, 3) and picture.dtype == np.uint8
     tiles = [picture[y + 30 : y + 330, x : x + 300] for y in (18, 412) for x in (18, 336, 654, 972)]
     assert all(tile.std() > 10 for tile in tiles)
@@ -270,4 +268,4 @@ def test_the_panel_shows_eight_pictures(
     ("value", "top"), [(0.14, 0.15), (0.15, 0.15), (0.9, 1), (1, 1), (0, 1e-6), (37, 40)]
 )
 def test_scales_end_at_round_numbers(value: float, top: float) -> None:
-    assert round_top(float(value)) == pytest.approx(top)
+    assert round_up(float(value)) == pytest.approx(top)

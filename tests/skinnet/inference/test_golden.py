@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 import torch
 
-from skinnet.inference.onnx_model import open_model, shipped_model
+from skinnet.inference import SHIPPED_ENCODER, open_model
 from skinnet.network.weights import load_weights
 from tools.golden import GOLDEN, numbers, photograph
 
@@ -15,7 +15,7 @@ TOLERANCE = {"temperature": 20.0}  # kelvin; the others are of the order of one
 
 
 def by_onnxruntime() -> dict[str, np.ndarray]:
-    return open_model(shipped_model(), "encoder", 1).run({"image": photograph()})
+    return open_model(SHIPPED_ENCODER, "encoder", 1).run({"image": photograph()})
 
 
 def by_torch() -> dict[str, np.ndarray]:

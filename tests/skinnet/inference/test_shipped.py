@@ -9,8 +9,8 @@ from skimage.color import rgb2lab
 from skimage.data import astronaut
 
 from skinnet import Decomposer, Decomposition
-from skinnet.images.photograph import srgb_to_linear
-from skinnet.inference.decomposer import shipped_model
+from skinnet.images import srgb_to_linear
+from skinnet.inference import SHIPPED_ENCODER
 from skinnet.network.weights import SHIPPED, load_weights
 from skinnet.physics import to_display
 
@@ -84,7 +84,7 @@ def test_edits_are_a_tan_and_a_flush(skin: np.ndarray) -> None:
 
 
 def test_the_shipped_files_are_in_the_package() -> None:
-    names = {path.name for path in shipped_model().parent.iterdir()}
+    names = {path.name for path in SHIPPED_ENCODER.parent.iterdir()}
     files = {"skin.onnx", "skin.decoder.onnx", "skin.safetensors"}
     assert names == files | {"MODEL_CARD.md", "CHANGELOG.md"}
     assert Path(SHIPPED).is_file()

@@ -13,7 +13,7 @@ from skinnet.appearance.linear import LinearModel
 from skinnet.appearance.measures import Curve, Measures
 from skinnet.appearance.stack import SubjectStack
 from skinnet.errors import InputError
-from skinnet.inference.panel import TILE
+from skinnet.inference import TILE
 from skinnet.pipeline._model_figures import hybrid_sheet, linear_sheet, write_measures
 
 

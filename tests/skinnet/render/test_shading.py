@@ -5,7 +5,7 @@ import pytest
 from trimesh.creation import icosphere
 
 from skinnet.errors import InputError
-from skinnet.images.photograph import linear_to_srgb, to_uint8
+from skinnet.images import linear_to_srgb, to_uint8
 from skinnet.mesh._vectors import normalise
 from skinnet.mesh.mesh import Mesh
 from skinnet.render._shading import EXPONENT, shade

@@ -7,7 +7,7 @@ import pytest
 
 from benchmarks.texture import sheet
 from skinnet.errors import InputError
-from skinnet.images.photograph import srgb_to_linear
+from skinnet.images import srgb_to_linear
 from skinnet.mesh.mesh import Mesh
 from skinnet.texture.projection import project_texture
 from skinnet.texture.warp import TextureSpace, Warped

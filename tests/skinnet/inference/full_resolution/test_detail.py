@@ -13,13 +13,12 @@ from PIL import Image
 from scipy import ndimage
 
 from skinnet import Decomposer, SkinDecoder
-from skinnet.images.faces import resize
-from skinnet.images.photograph import linear_to_srgb, srgb_to_linear, to_uint8
+from skinnet.images import linear_to_srgb, resize, srgb_to_linear, to_uint8
+from skinnet.inference import SHIPPED_ENCODER, get_decoder_path, open_model
 from skinnet.inference.full_resolution import _layers as full_size
 from skinnet.inference.full_resolution._colour_table import ColourTable, tabulate
 from skinnet.inference.full_resolution._detail import octaves, pigment_detail
 from skinnet.inference.full_resolution._layers import Layers, sharpen
-from skinnet.inference.onnx_model import decoder_path, open_model, shipped_model
 
 SIZE, SMALL, TOP = 480, 40, (0.43, 0.15)
 Maps = dict[str, np.ndarray]
@@ -34,7 +33,7 @@ def skin() -> SkinDecoder:
 def table(skin: SkinDecoder) -> ColourTable:
     capture = skin.camera.standard()._asdict()
     codes = {name: np.float32(value.numpy())[None] for name, value in capture.items()}
-    return tabulate(open_model(decoder_path(shipped_model()), "decoder", 1), codes, TOP)
+    return tabulate(open_model(get_decoder_path(SHIPPED_ENCODER), "decoder", 1), codes, TOP)
 
 
 @pytest.fixture(scope="module")

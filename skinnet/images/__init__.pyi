@@ -1,0 +1,25 @@
+from .box import Box as Box
+from .faces import find_face as find_face
+from .faces import frame_head as frame_head
+from .photograph import as_photo as as_photo
+from .photograph import read_photo as read_photo
+from .photograph import write_png as write_png
+from .resizing import resize as resize
+from .skin_segmentation import segment_skin as segment_skin
+from .srgb import linear_to_srgb as linear_to_srgb
+from .srgb import srgb_to_linear as srgb_to_linear
+from .srgb import to_uint8 as to_uint8
+
+__all__ = [
+    "Box",
+    "as_photo",
+    "find_face",
+    "frame_head",
+    "linear_to_srgb",
+    "read_photo",
+    "resize",
+    "segment_skin",
+    "srgb_to_linear",
+    "to_uint8",
+    "write_png",
+]

@@ -1,0 +1,37 @@
+from .decomposer import Decomposer as Decomposer
+from .decomposition import Decomposition as Decomposition
+from .onnx_model import CAPTURE_NAMES as CAPTURE_NAMES
+from .onnx_model import MAP_NAMES as MAP_NAMES
+from .onnx_model import ONNX_FORMAT as ONNX_FORMAT
+from .onnx_model import SHIPPED_ENCODER as SHIPPED_ENCODER
+from .onnx_model import OnnxModel as OnnxModel
+from .onnx_model import OutputInfo as OutputInfo
+from .onnx_model import get_decoder_path as get_decoder_path
+from .onnx_model import open_model as open_model
+from .panel import TILE as TILE
+from .panel import draw_grid as draw_grid
+from .panel import draw_panel as draw_panel
+from .panel import draw_picture as draw_picture
+from .panel import draw_pigment_map as draw_pigment_map
+from .panel import round_up as round_up
+from .results import write_results as write_results
+
+__all__ = [
+    "CAPTURE_NAMES",
+    "MAP_NAMES",
+    "ONNX_FORMAT",
+    "SHIPPED_ENCODER",
+    "TILE",
+    "Decomposer",
+    "Decomposition",
+    "OnnxModel",
+    "OutputInfo",
+    "draw_grid",
+    "draw_panel",
+    "draw_picture",
+    "draw_pigment_map",
+    "get_decoder_path",
+    "open_model",
+    "round_up",
+    "write_results",
+]
