@@ -5,7 +5,7 @@ from collections.abc import Iterable, Mapping
 import torch
 from torch import Tensor
 
-from benchmarks.running_statistics import Moments
+from benchmarks.running_statistics import RunningStatistics
 from benchmarks.scene import Pixels, Scene, under_daylight
 from skinnet.physics import SkinDecoder
 
@@ -75,7 +75,7 @@ class Tsumura:
         self.decoder = decoder
         self.lines = {"melanin": (1.0, 0.0), "hemoglobin": (1.0, 0.0)}
         self.scale = 1.0
-        self.fits = {name: Moments() for name in (*self.lines, "shading")}
+        self.fits = {name: RunningStatistics() for name in (*self.lines, "shading")}
 
     def learn(self, scene: Scene) -> None:
         """Count in pictures that lines and factor shall be best for."""

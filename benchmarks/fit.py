@@ -25,12 +25,12 @@ from scipy.spatial.transform import Rotation
 from benchmarks.report import Results, main
 from skinnet.mesh.mesh import Mesh
 from skinnet.shape._moments import gather
-from skinnet.shape._scan_points import Surface
+from skinnet.shape._scan_points import ScanPoints
 from skinnet.shape._separable import Separable
 from skinnet.shape.model import ShapeModel
-from skinnet.shape.procedural_head import IDENTITY, chart, relief
+from skinnet.shape.procedural_head import IDENTITY_SIZE, compute_chart_angles, compute_head_radius
 from skinnet.shape.registration import Registration, register
-from skinnet.shape.similarity import Similarity, similarity
+from skinnet.shape.similarity import Similarity, fit_similarity
 
 VERTICES, MODES = 53_490, 199
 TARGET = 100_000
@@ -49,7 +49,9 @@ def big_model(vertices: int = VERTICES, modes: int = MODES, seed: int = 0) -> Sh
     side = int(np.ceil(np.sqrt(vertices)))
     draw = np.random.default_rng(seed)
     people = 2 * modes
-    identity = np.concatenate([np.zeros((1, IDENTITY)), draw.normal(size=(people, IDENTITY))])
+    identity = np.concatenate(
+        [np.zeros((1, IDENTITY_SIZE)), draw.normal(size=(people, IDENTITY_SIZE))]
+    )
     heads = _heads(identity, side)
     heads *= HEIGHT / np.ptp(heads[0, ..., 1])
     for row in range(people):
@@ -75,12 +77,14 @@ def _heads(identity: np.ndarray, side: int) -> np.ndarray:
         int(np.ceil(1.01 * side * full / part))
         for part, full in zip(FACE[::-1], (1.5, 2.0), strict=True)
     )
-    azimuth, elevation = (axis.numpy().ravel() for axis in chart(rows, columns))
+    azimuth, elevation = (axis.numpy().ravel() for axis in compute_chart_angles(rows, columns))
     first_row, first_column = (rows - side) // 2, (columns - side) // 2
     inside = slice(first_row, first_row + side), slice(first_column, first_column + side)
     radius = np.concatenate(
         [
-            relief(torch.from_numpy(one[None]).float(), rows, columns)[:, 0][(..., *inside)].numpy()
+            compute_head_radius(torch.from_numpy(one[None]).float(), rows, columns)[:, 0][
+                (..., *inside)
+            ].numpy()
             for one in identity
         ]
     )
@@ -132,8 +136,8 @@ class Case:
     def error(self, found: Registration, triangles: np.ndarray) -> tuple[float, float]:
         """RMS distance in mm of the surface that was present to the fitted surface, and of the
         fitted vertices to their own true places there."""
-        fitted = self.pose.inverse(found.vertices)
-        there = Surface(Mesh(fitted, triangles))
+        fitted = self.pose.apply_inverse(found.vertices)
+        there = ScanPoints(Mesh(fitted, triangles))
         across = there.nearest(self.truth[self.present]).across(self.truth[self.present])
         apart = np.linalg.norm(fitted - self.truth, axis=1)[self.present]
         return float(np.sqrt(np.mean(across**2))), float(np.sqrt(np.mean(apart**2)))
@@ -149,7 +153,7 @@ def case(
     triangles, joined anew.
     """
     draw = np.random.default_rng(seed)
-    truth = model.shape(draw.normal(size=len(model.variances)) * np.sqrt(model.variances))
+    truth = model.reconstruct(draw.normal(size=len(model.variances)) * np.sqrt(model.variances))
     axis = draw.normal(size=3)
     turn = np.radians(30 * draw.random()) * axis / np.linalg.norm(axis)
     scale, place = float(np.exp(draw.normal(0, 1))), 300 * draw.normal(size=3)
@@ -268,12 +272,12 @@ def whole_fit(vertices: int = VERTICES, modes: int = MODES, target: int = TARGET
 
 def _thinned(one: Case, target: int) -> Case:
     """The scan with its rearmost triangles cut off until about `target` vertices are left."""
-    ahead = one.pose.inverse(one.scan.vertices)[:, 2]
+    ahead = one.pose.apply_inverse(one.scan.vertices)[:, 2]
     cut = np.sort(ahead)[max(len(ahead) - target, 0)]
     triangles = one.scan.triangles[(ahead >= cut)[one.scan.triangles].all(1)]
     used, index = np.unique(triangles, return_inverse=True)
     scan = Mesh(one.scan.vertices[used], index.reshape(-1, 3), name=one.scan.name)
-    gone = one.pose.inverse(scan.vertices)[:, 2].min()
+    gone = one.pose.apply_inverse(scan.vertices)[:, 2].min()
     return Case(scan, one.landmarks, one.pose, one.truth, one.present & (one.truth[:, 2] > gone))
 
 
@@ -290,12 +294,14 @@ def beside_nricp(vertices: int = RIVAL_VERTICES, modes: int = 60) -> Results:
     names = sorted(model.landmarks)
     marks = np.stack([one.landmarks[name] for name in names])
     rows = [model.landmarks[name] for name in names]
-    pose = similarity(model.mean[rows].astype(np.float64), marks)
+    pose = fit_similarity(model.mean[rows].astype(np.float64), marks)
     source = trimesh.Trimesh(model.mean, model.triangles, process=False)
-    target = trimesh.Trimesh(pose.inverse(one.scan.vertices), one.scan.triangles, process=False)
+    target = trimesh.Trimesh(
+        pose.apply_inverse(one.scan.vertices), one.scan.triangles, process=False
+    )
     start = time.perf_counter()
     moved = trimesh.registration.nricp_amberg(
-        source, target, rows, pose.inverse(marks), use_faces=False
+        source, target, rows, pose.apply_inverse(marks), use_faces=False
     )
     rival = time.perf_counter() - start
     found = Registration(pose, np.zeros(0), pose(moved), np.zeros(0), np.zeros(0, bool), 1.0, ())

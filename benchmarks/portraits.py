@@ -18,7 +18,7 @@ from scipy.stats import spearmanr
 from benchmarks.disturbances import DISTURBANCES, UNDONE
 from benchmarks.reader import Reader, composed, resized
 from benchmarks.report import Results
-from benchmarks.running_statistics import Moments
+from benchmarks.running_statistics import RunningStatistics
 from benchmarks.scene import under_daylight
 from benchmarks.typology import GROUPS, group, typology_angle
 from skinnet.images import find_face, frame_head, read_photo, resize, segment_skin, srgb_to_linear
@@ -96,8 +96,8 @@ def measure_portraits(
     `congress_held_out` is what stage 2 did not see if it was trained on the Congress portraits by
     the defaults of `train.portraits`; only with all pictures are these known.
     """
-    errors: dict[str, list[Moments]] = {}
-    bare: list[Moments] = []
+    errors: dict[str, list[RunningStatistics]] = {}
+    bare: list[RunningStatistics] = []
     changes: dict[str, list[list[float]]] = {name: [] for name in DISTURBANCES}
     measured: list[tuple[Portrait, list[float]]] = []
     for kind in ("congress", "london"):
@@ -129,17 +129,17 @@ def measure_portraits(
     }
 
 
-def rebuilt(one: Portrait, image: torch.Tensor) -> Moments:
+def rebuilt(one: Portrait, image: torch.Tensor) -> RunningStatistics:
     """Errors on the skin of a portrait, in linear RGB."""
     linear, skin = torch.from_numpy(srgb_to_linear(one.crop)), torch.from_numpy(one.skin)
-    moments = Moments()
+    moments = RunningStatistics()
     moments.add(image[0].movedim(0, -1)[skin], linear[skin])
     return moments
 
 
-def pooled(parts: Iterable[Moments]) -> Moments:
+def pooled(parts: Iterable[RunningStatistics]) -> RunningStatistics:
     """Of all pixels of several pictures."""
-    whole = Moments()
+    whole = RunningStatistics()
     for part in parts:
         whole.sums += part.sums
     return whole

@@ -7,7 +7,7 @@ NEGLIGIBLE = 1e-12
 """Variance relative to the mean square below which a value counts as constant."""
 
 
-class Moments:
+class RunningStatistics:
     """Of a guess and the truth: number, sums, squares, products and errors, in float64.
 
     Every figure is None where nothing was added, or where it is not defined.

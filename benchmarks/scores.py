@@ -5,7 +5,7 @@ from typing import Any
 import torch
 from torch import Tensor
 
-from benchmarks.running_statistics import Moments
+from benchmarks.running_statistics import RunningStatistics
 from benchmarks.scene import Pixels, Scene, mean_by
 from benchmarks.typology import GROUPS, group
 from skinnet.network.autoencoder import F_MEL_MAX
@@ -27,12 +27,12 @@ class Scores:
 
     def __init__(self) -> None:
         self.pixel, self.image, self.grid = (
-            {name: Moments() for name in PIGMENTS} for _ in range(3)
+            {name: RunningStatistics() for name in PIGMENTS} for _ in range(3)
         )
-        self.columns = {name: Moments() for name in COLUMNS}
-        self.groups = {name: Moments() for name in GROUPS}
+        self.columns = {name: RunningStatistics() for name in COLUMNS}
+        self.groups = {name: RunningStatistics() for name in GROUPS}
         self.pictures = dict.fromkeys(GROUPS, 0)
-        self.leak, self.explained = Moments(), Moments()
+        self.leak, self.explained = RunningStatistics(), RunningStatistics()
         self.overlap: Tensor | None = torch.zeros(2, dtype=torch.float64)
 
     def add(self, guess: Pixels, scene: Scene) -> None:

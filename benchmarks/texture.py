@@ -17,8 +17,8 @@ from skimage.transform import PiecewiseAffineTransform, warp
 
 from benchmarks.report import Results, main
 from skinnet.mesh.raster import rasterise
-from skinnet.texture.mirror import mirror_vertices
-from skinnet.texture.tutte import flipped, tutte
+from skinnet.texture.mirror import find_mirror_vertices
+from skinnet.texture.tutte import compute_tutte_embedding, count_flipped_triangles
 from skinnet.texture.warp import TextureSpace, warp_texture
 
 VERTICES = 53_490
@@ -115,8 +115,8 @@ def measure(
     """Every figure, by name."""
     rows = int(np.ceil(np.sqrt(vertices * 1.02)))
     surface, triangles = sheet(rows, rows)
-    mirror_s, mirror = least(lambda: mirror_vertices(surface))
-    tutte_s, uv = least(lambda: tutte(surface, triangles, mirror))
+    mirror_s, mirror = least(lambda: find_mirror_vertices(surface))
+    tutte_s, uv = least(lambda: compute_tutte_embedding(surface, triangles, mirror))
     raster_s, _ = least(lambda: rasterise(uv[triangles], size))
     source = 0.5 + surface[:, :2] / [170, 230]
     picture = np.random.default_rng(0).random((size, size, 3), np.float32)
@@ -131,7 +131,7 @@ def measure(
         "triangles": len(triangles),
         "mirror_s": mirror_s,
         "tutte_s": tutte_s,
-        "flipped": flipped(uv, triangles),
+        "flipped": count_flipped_triangles(uv, triangles),
         "asymmetry": float(np.abs(uv[mirror] - [1, 0] - uv * [-1, 1]).max()),
         "raster_s": raster_s,
         "warp_s": least(filled)[0],

@@ -24,8 +24,7 @@ from skinnet.images import linear_to_srgb, to_uint8
 from skinnet.mesh.mesh import Mesh
 from skinnet.mesh.mesh_file import write_mesh
 from skinnet.physics import load_spectrum_to_srgb
-from skinnet.shape._default_model import default_model
-from skinnet.shape.landmarks import write_landmarks
+from skinnet.shape import load_shape_model, write_landmarks
 from train.synthetic.face_painting import Paint, paint_skin
 from train.synthetic.scene_sampling import draw_lot
 
@@ -62,9 +61,9 @@ def person(number: int, people: int, texels: int) -> dict[str, np.ndarray]:
 
 def write_person(path: Path, truth: dict[str, np.ndarray], colour: SkinColour) -> None:
     """A scan of that person as OBJ with PNG and landmarks, and the true maps as .npz."""
-    model = default_model()
+    model = load_shape_model()
     alpha = truth["draw"][: len(model.variances)] * np.sqrt(model.variances)
-    mesh = model.mesh(alpha)
+    mesh = model.build_mesh(alpha)
     flat = [torch.from_numpy(truth[name]).flatten()[None] for name in PIGMENTS]
     skin = colour.skin(*flat)[0].reshape(3, *truth["f_mel"].shape).numpy()
     rgb = (1 - truth["cover"]) * skin + truth["cover"] * truth["paint"]

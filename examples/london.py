@@ -26,8 +26,8 @@ from skinnet.cli import main as skinnet
 from skinnet.images import read_photo, srgb_to_linear
 from skinnet.pipeline._maps import invert
 from skinnet.pipeline.calibrate import ColourSettings
-from skinnet.shape.procedural_head import chart
-from skinnet.texture.warp import TextureSpace, Warped, warp_texture
+from skinnet.shape import compute_chart_angles
+from skinnet.texture import TextureSpace, WarpedTexture, warp_texture
 from train.synthetic.model_skins import save_skins
 from train.synthetic.scene_sampling import CHART
 from train.synthetic.skins import Place, draw_skins
@@ -125,7 +125,7 @@ def chart_place(mean: np.ndarray) -> Place:
     points = mean[np.concatenate([marks[:, 0], marks[:, 1]])]
     places, once = np.unique(places.round(9) + 0.0, axis=0, return_index=True)
     spline = RBFInterpolator(_ahead(places), points[once], smoothing=1e-4)
-    azimuth, elevation = (axis.double().numpy() for axis in chart(*CHART))
+    azimuth, elevation = (axis.double().numpy() for axis in compute_chart_angles(*CHART))
     texels = np.stack(np.broadcast_arrays(azimuth, elevation), -1)
     found = spline(_ahead(texels).reshape(-1, 2)).reshape(*CHART, 2)
     return np.where(np.abs(azimuth)[..., None] < FRONTAL, found, np.nan)
@@ -160,7 +160,7 @@ def main() -> None:
     colours = settings.calibrated([image[mask].astype(np.float64) for image in images])
     rows = zip(files, images, colours.found.exposures, strict=True)
     for file, image, factor in rows:
-        texture, off = invert(Warped(image, mask), factor, colours, file.stem)
+        texture, off = invert(WarpedTexture(image, mask), factor, colours, file.stem)
         save_maps(maps / f"{file.stem}_maps.npz", texture, colours.colour)
         medians = [np.median(one[mask]) for one in (texture.f_mel, texture.f_blood)]
         print(f"{file.stem}: melanin {medians[0]:.3f}, hemoglobin {medians[1]:.3f}, {off:.1%} off")

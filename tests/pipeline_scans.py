@@ -10,7 +10,7 @@ from skinnet.appearance.colour import SkinColour
 from skinnet.images import linear_to_srgb, to_uint8
 from skinnet.mesh.mesh import Mesh
 from skinnet.mesh.mesh_file import write_mesh
-from skinnet.shape._default_model import default_model
+from skinnet.shape import load_shape_model
 from skinnet.shape.landmarks import write_landmarks
 
 SIZE = 48
@@ -29,11 +29,11 @@ def pigments(seed: int, size: int = 64) -> tuple[torch.Tensor, torch.Tensor]:
 
 def write_scan(path: Path, seed: int, scale: float = 1.0) -> None:
     """A textured face with its landmarks, turned a little; `scale` is units a millimetre."""
-    model = default_model()
+    model = load_shape_model()
     draw = np.random.default_rng(seed)
     alpha = draw.normal(size=len(model.variances)) * np.sqrt(model.variances)
     turn = Rotation.from_rotvec([0.02, 0.1 * seed, 0.0]).as_matrix()
-    vertices = scale * (model.shape(alpha) @ turn.T + [30, -10, 5])
+    vertices = scale * (model.reconstruct(alpha) @ turn.T + [30, -10, 5])
     f_mel, f_blood = pigments(seed)
     rgb = SkinColour().skin(f_mel.flatten(1), f_blood.flatten(1))[0].unflatten(-1, (64, 64))
     texture = to_uint8(linear_to_srgb(rgb.movedim(0, -1).numpy()))

@@ -14,7 +14,7 @@ from skimage.data import astronaut
 from benchmarks import disturbances, encoder, portraits, targets
 from benchmarks.baselines import Lookup, Tsumura
 from benchmarks.reader import NetworkReader, composed
-from benchmarks.running_statistics import Moments
+from benchmarks.running_statistics import RunningStatistics
 from benchmarks.scene import Pixels, Scene, under_daylight
 from benchmarks.scores import Scores
 from benchmarks.typology import GROUPS, group, typology_angle
@@ -96,13 +96,13 @@ def test_shading_read_as_melanin_is_a_leak(skins: Scene) -> None:
 def test_moments_are_numpy_s() -> None:
     x, y = np.random.default_rng(0).normal(0.1, 0.02, (2, 3, 100))
     y = x + 0.5 * y
-    moments = Moments()
+    moments = RunningStatistics()
     for a, b in zip(x, y, strict=True):
         moments.add(torch.from_numpy(a), torch.from_numpy(b))
     assert moments.r == pytest.approx(np.corrcoef(x.ravel(), y.ravel())[0, 1])
     assert moments.rmse == pytest.approx(np.sqrt(np.mean((x - y) ** 2)))
     assert moments.line == pytest.approx(tuple(np.polyfit(x.ravel(), y.ravel(), 1)))
-    assert Moments().rmse is None and Moments().r is None
+    assert RunningStatistics().rmse is None and RunningStatistics().r is None
 
 
 def test_typology_angle_is_that_of_colour_science() -> None:

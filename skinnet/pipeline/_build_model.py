@@ -217,7 +217,7 @@ def renderer_of(files: list[Path]) -> Renderer | None:
         return None
     found = [load_fit(file) for file in fits]
     face = read_mesh(meshes[0])
-    shapes = [one.pose.inverse(one.vertices) for one in found]
+    shapes = [one.pose.apply_inverse(one.vertices) for one in found]
     if any(shape.shape != face.vertices.shape for shape in shapes):
         return None
     return partial(RelightSettings(size=TILE).picture, replace(face, vertices=np.mean(shapes, 0)))

@@ -9,7 +9,7 @@ import numpy as np
 from skinnet.appearance._model_arrays import READ_ERRORS
 from skinnet.errors import InputError
 from skinnet.files import write_atomically
-from skinnet.shape._icp import StageRecord
+from skinnet.shape.fit_settings import StageRecord
 from skinnet.shape.registration import Registration
 from skinnet.shape.similarity import Similarity
 

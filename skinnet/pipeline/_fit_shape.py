@@ -24,7 +24,7 @@ from skinnet.pipeline._scans import (
     scan_options,
 )
 from skinnet.pipeline.initial_pose import find_initial_pose
-from skinnet.shape._icp import FitSettings
+from skinnet.shape.fit_settings import FitSettings
 from skinnet.shape.model import ShapeModel
 from skinnet.shape.registration import Registration, register
 

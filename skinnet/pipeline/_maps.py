@@ -18,12 +18,12 @@ from skinnet.pipeline._maps_writer import ENDS, write_maps
 from skinnet.pipeline._progress import digest, finished, log, write_record
 from skinnet.pipeline._scans import add_scan_arguments, each_scan, scan_options
 from skinnet.pipeline.calibrate import Colours, ColourSettings
-from skinnet.shape._icp import FitSettings
+from skinnet.shape.fit_settings import FitSettings
 from skinnet.shape.model import ShapeModel
-from skinnet.texture.mirror import mirror_vertices
-from skinnet.texture.projection import NORMAL_LIMIT, project_texture
-from skinnet.texture.tutte import tutte
-from skinnet.texture.warp import TextureSpace, Warped
+from skinnet.texture.mirror import find_mirror_vertices
+from skinnet.texture.projection import MAX_NORMAL_ANGLE, project_texture
+from skinnet.texture.tutte import compute_tutte_embedding
+from skinnet.texture.warp import TextureSpace, WarpedTexture
 
 DOUBTFUL = 0.5
 """Share of texels off the manifold above which maps are doubtful."""
@@ -42,7 +42,7 @@ class WarpSettings:
 
     size: int = 1024
     limit: float = 5.0
-    angle: float = NORMAL_LIMIT
+    angle: float = MAX_NORMAL_ANGLE
     own_uv: bool = False
 
     def __post_init__(self) -> None:
@@ -57,7 +57,7 @@ def embedded(model: ShapeModel, own_uv: bool = False) -> ShapeModel:
             raise InputError(f"{model.name} has no texture coordinates; leave out own_uv.")
         return model
     mean = model.mean.astype(np.float64)
-    uv = tutte(mean, model.triangles, mirror_vertices(mean))
+    uv = compute_tutte_embedding(mean, model.triangles, find_mirror_vertices(mean))
     return replace(model, uv=uv, uv_triangles=model.triangles)
 
 
@@ -72,7 +72,7 @@ class Skin:
     """One scan on its way: the fit, and its texture in the model's space."""
 
     fitted: Fitted
-    warped: Warped
+    warped: WarpedTexture
 
     @cached_property
     def colours(self) -> Float[np.ndarray, "n 3"]:
@@ -109,13 +109,15 @@ def run(config: Namespace) -> int:
     return code
 
 
-def warped(fit: Fitted, model: ShapeModel, space: TextureSpace, settings: WarpSettings) -> Warped:
+def warped(
+    fit: Fitted, model: ShapeModel, space: TextureSpace, settings: WarpSettings
+) -> WarpedTexture:
     """A scan's texture in the model's space, from disk if it was made before."""
     file, record = (fit.stem.with_name(f"{fit.stem.name}_warp.{end}") for end in ("npz", "json"))
     fingerprint = digest(fit.fingerprint, settings, space.uv.tobytes().hex())
     if finished(record, fingerprint, [file]):
         with np.load(file, allow_pickle=False) as found:
-            return Warped(found["image"], found["mask"])
+            return WarpedTexture(found["image"], found["mask"])
     limit = settings.limit / fit.found.millimetres
     made = project_texture(space, fit.mesh(model), fit.scan.mesh, limit, settings.angle)
     covered = made.mask.sum() / space.mask.sum()
@@ -164,7 +166,9 @@ def inverted(skin: Skin, factor: float, model: ShapeModel, colours: Colours) -> 
     )
 
 
-def invert(warped: Warped, factor: float, colours: Colours, name: str) -> tuple[SkinTexture, float]:
+def invert(
+    warped: WarpedTexture, factor: float, colours: Colours, name: str
+) -> tuple[SkinTexture, float]:
     """Maps of a texture's colours times `factor`, and the share of them off the skin manifold."""
     mask = warped.mask
     gain = factor * colours.settings.balance()

@@ -1,1 +1,5 @@
-"""Shapes of faces."""
+"""Statistical shape models of faces, and their fit to scans."""
+
+import lazy_loader
+
+__getattr__, __dir__, __all__ = lazy_loader.attach_stub(__name__, __file__)

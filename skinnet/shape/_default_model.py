@@ -44,12 +44,12 @@ _PLACES = {
 
 
 @cache
-def default_model() -> ShapeModel:
+def build_default_model() -> ShapeModel:
     """The procedural face (`skinnet.shape.procedural_head`) with some 6,000 vertices; made once."""
-    return procedural_model()
+    return build_procedural_model()
 
 
-def procedural_model(rows: int = 115, columns: int = 153) -> ShapeModel:
+def build_procedural_model(rows: int = 115, columns: int = 153) -> ShapeModel:
     """The procedural face on a grid of `rows` x `columns` over its chart, about a third inside.
 
     The modes are principal components of `DRAWS` faces with seeded standard normal numbers.
@@ -87,9 +87,11 @@ def procedural_model(rows: int = 115, columns: int = 153) -> ShapeModel:
 def _axes(
     rows: int, columns: int
 ) -> tuple[Float[np.ndarray, "columns"], Float[np.ndarray, "rows"]]:
-    from skinnet.shape.procedural_head import chart
+    from skinnet.shape.procedural_head import compute_chart_angles
 
-    azimuth, elevation = (axis.double().numpy().ravel() for axis in chart(rows, columns))
+    azimuth, elevation = (
+        axis.double().numpy().ravel() for axis in compute_chart_angles(rows, columns)
+    )
     return (azimuth - azimuth[::-1]) / 2, elevation
 
 
@@ -156,13 +158,13 @@ def _drawn(half: Bool[np.ndarray, "rows half"]) -> Float[np.ndarray, "draws vert
     """Radius of drawn faces at the places chosen from the chart's right half and middle column."""
     import torch
 
-    from skinnet.shape.procedural_head import IDENTITY, relief
+    from skinnet.shape.procedural_head import IDENTITY_SIZE, compute_head_radius
 
     lot = torch.Generator().manual_seed(0)
-    numbers = torch.randn(DRAWS // 2, IDENTITY, generator=lot, dtype=torch.float64)
+    numbers = torch.randn(DRAWS // 2, IDENTITY_SIZE, generator=lot, dtype=torch.float64)
     rows, middle = half.shape[0], half.shape[1] - 1
     few = torch.cat([numbers, -numbers]).split(25)
-    heads = (relief(each, rows, 2 * middle + 1)[:, 0, :, middle:].numpy() for each in few)
+    heads = (compute_head_radius(each, rows, 2 * middle + 1)[:, 0, :, middle:].numpy() for each in few)
     return np.concatenate([head[:, half] for head in heads])
 
 

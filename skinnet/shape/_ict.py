@@ -17,7 +17,7 @@ from skinnet.errors import InputError
 from skinnet.mesh._mesh_parts import read_obj_positions
 from skinnet.mesh._seams import match_positions, merge_coordinates
 from skinnet.mesh.mesh_file import read_mesh
-from skinnet.shape.landmarks import ibug_name
+from skinnet.shape.landmarks import name_ibug_point
 from skinnet.shape.model import ShapeModel, checked_model
 
 NEUTRAL = "generic_neutral_mesh.obj"
@@ -107,7 +107,7 @@ def _listed_landmarks(path: Path, index: np.ndarray) -> dict[str, int]:
 
 
 def _named(vertices: Any) -> dict[str, int]:
-    return {ibug_name(number): int(vertex) for number, vertex in enumerate(vertices)}
+    return {name_ibug_point(number): int(vertex) for number, vertex in enumerate(vertices)}
 
 
 def _face(model: ShapeModel, keep: np.ndarray) -> ShapeModel:
@@ -116,4 +116,4 @@ def _face(model: ShapeModel, keep: np.ndarray) -> ShapeModel:
         own = (model.uv[model.uv_triangles] <= 1).all((1, 2))
         triangles, uv_triangles = model.triangles[own], model.uv_triangles[own]
         model = replace(model, triangles=triangles, uv_triangles=uv_triangles)
-    return model.region(keep)
+    return model.crop(keep)

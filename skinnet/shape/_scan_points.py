@@ -34,7 +34,7 @@ class Nearest(NamedTuple):
         return np.where(self.boundary, self.distance, plane)
 
 
-class Surface:
+class ScanPoints:
     """Points on a mesh with unit normals, and which of them lie on its open edge.
 
     Spikes (`SPIKE`) are cut off first. Distances are to the points, which stand close: the

@@ -16,7 +16,7 @@ from skinnet.files import write_text
 from skinnet.mesh.mesh import Mesh
 from skinnet.shape._landmark_formats import parse_ljson, parse_pp
 from skinnet.shape.model import ShapeModel
-from skinnet.shape.similarity import similarity
+from skinnet.shape.similarity import fit_similarity
 
 IBUG = {
     "right_brow_outer": 17,
@@ -57,7 +57,7 @@ Point = Float[np.ndarray, "3"]
 _NAMES = {number: name for name, number in IBUG.items()}
 
 
-def ibug_name(number: int) -> str:
+def name_ibug_point(number: int) -> str:
     """The name of a point of iBUG's 68: one of `IBUG`, else ibug_<number>."""
     return _NAMES.get(number, f"ibug_{number}")
 
@@ -148,7 +148,7 @@ def _check_side(
     if spread[1] <= 1e-3 * spread[0]:
         raise InputError(f"{name} lie on a line, or all in one place; mark them on the face.")
     residual, mirrored = (
-        float(np.square(similarity(source, target, reflection)(source) - target).sum())
+        float(np.square(fit_similarity(source, target, reflection)(source) - target).sum())
         for reflection in (False, True)
     )
     if mirrored + 1e-9 * spread[0] ** 2 < MIRRORED * residual:
@@ -202,7 +202,7 @@ def _canonical(name: str) -> str:
         return name.strip()
     if int(number) >= POINTS:
         raise InputError(f"Landmark {name} is none of iBUG's, which go from 0 to {POINTS - 1}.")
-    return ibug_name(int(number))
+    return name_ibug_point(int(number))
 
 
 def _position(path: Path, name: str, value: Any, mesh: Mesh | None) -> Point:

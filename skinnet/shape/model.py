@@ -34,15 +34,17 @@ class ShapeModel:
     millimetres: float = 1.0
     name: str = "model"
 
-    def shape(self, alpha: Float[np.ndarray, "modes"]) -> Float[np.ndarray, "vertices 3"]:
+    def reconstruct(self, alpha: Float[np.ndarray, "modes"]) -> Float[np.ndarray, "vertices 3"]:
         """Vertices of the face with these coefficients; fewer than S stand for the first."""
         return self.mean + np.tensordot(alpha, self.basis[: len(alpha)], 1)
 
-    def mesh(self, alpha: Float[np.ndarray, "modes"]) -> Mesh:
+    def build_mesh(self, alpha: Float[np.ndarray, "modes"]) -> Mesh:
         """The face with these coefficients as a mesh without a texture."""
-        return Mesh(self.shape(alpha), self.triangles, self.uv, self.uv_triangles, name=self.name)
+        return Mesh(
+            self.reconstruct(alpha), self.triangles, self.uv, self.uv_triangles, name=self.name
+        )
 
-    def truncated(self, modes: int) -> "ShapeModel":
+    def truncate(self, modes: int) -> "ShapeModel":
         """The model's first modes. Raises `InputError` if it has fewer."""
         if not 0 < modes <= len(self.variances):
             raise InputError(
@@ -51,7 +53,7 @@ class ShapeModel:
             )
         return replace(self, basis=self.basis[:modes], variances=self.variances[:modes])
 
-    def region(self, keep: Bool[np.ndarray, "vertices"]) -> "ShapeModel":
+    def crop(self, keep: Bool[np.ndarray, "vertices"]) -> "ShapeModel":
         """The model of some vertices, with the triangles and landmarks that lie wholly on them."""
         number = np.cumsum(keep) - 1
         inside = keep[self.triangles].all(1)

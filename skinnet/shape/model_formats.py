@@ -12,7 +12,7 @@ from skinnet.errors import InputError
 from skinnet.files import READ_ERRORS, write_atomically
 from skinnet.mesh._mesh_parts import MESH_SUFFIXES
 from skinnet.shape._basel import load_basel_2009, load_basel_2017
-from skinnet.shape._default_model import default_model
+from skinnet.shape._default_model import build_default_model
 from skinnet.shape._ict import NEUTRAL, ict_from_arrays, load_ict_folder
 from skinnet.shape.landmarks import read_landmark_vertices
 from skinnet.shape.model import ShapeModel, checked_model
@@ -35,17 +35,17 @@ def load_shape_model(
 
     Read are our own .npz (`save_shape_model`) and ICT-FaceKit's, its folder FaceXModel or the one
     above, the Basel Face Models of 2009 (.mat) and 2017 and 2019 (.h5), and a folder of registered
-    meshes, of which a model is built; `align` and `millimetres` are for these (`from_meshes`).
+    meshes, of which a model is built; `align` and `millimetres` are for these (`build_shape_model`).
     `landmarks` is a .json file of names and vertex numbers that takes the place of the model's own.
     `modes` keeps the first ones. Nothing is unpickled.
 
     Raises `InputError` for a path where there is no model, and for models that are damaged.
     """
-    model = default_model() if path is None else _load(Path(path), align, millimetres)
+    model = build_default_model() if path is None else _load(Path(path), align, millimetres)
     if landmarks is not None:
         marks = read_landmark_vertices(Path(landmarks), len(model.mean))
         model = replace(model, landmarks=marks)
-    return model if modes is None else model.truncated(modes)
+    return model if modes is None else model.truncate(modes)
 
 
 def save_shape_model(path: Path, model: ShapeModel) -> None:

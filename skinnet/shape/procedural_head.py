@@ -5,14 +5,11 @@ and a chart in azimuth and elevation covers the face without a seam. Lengths are
 crown and chin lie one unit above and below the eyes. x points to the face's left, y up, z forward.
 """
 
-from typing import NamedTuple
-
 import torch
-import torch.nn.functional as F
 from jaxtyping import Float
 from torch import Tensor
 
-CHART = (2.0, 1.5)
+CHART_EXTENT = (2.0, 1.5)
 """Largest azimuth and elevation of the chart, in radians."""
 
 # Azimuth and elevation, their widths (radians), and height (half heads). A feature off the middle
@@ -35,54 +32,26 @@ BUMPS: dict[str, tuple[float, float, float, float, float]] = {
 
 AXES = (0.69, 1.0, 0.90)
 ROUNDNESS = 2.6
-IDENTITY = len(BUMPS) * 3 + len(AXES) + 1
+IDENTITY_SIZE = len(BUMPS) * 3 + len(AXES) + 1
 
 
-class Surface(NamedTuple):
-    """A head over the chart: radius and unit normals in the head's own axes."""
-
-    radius: Float[Tensor, "batch 1 rows columns"]
-    normal: Float[Tensor, "batch 3 rows columns"]
-
-
-def chart(rows: int, columns: int) -> tuple[Float[Tensor, "1 columns"], Float[Tensor, "rows 1"]]:
+def compute_chart_angles(
+    rows: int, columns: int
+) -> tuple[Float[Tensor, "1 columns"], Float[Tensor, "rows 1"]]:
     """Azimuth and elevation in radians of the chart's texels; the first row is the top."""
-    azimuth = torch.linspace(-CHART[0], CHART[0], columns)[None, :]
-    elevation = torch.linspace(CHART[1], -CHART[1], rows)[:, None]
+    azimuth = torch.linspace(-CHART_EXTENT[0], CHART_EXTENT[0], columns)[None, :]
+    elevation = torch.linspace(CHART_EXTENT[1], -CHART_EXTENT[1], rows)[:, None]
     return azimuth, elevation
 
 
-def relief(
+def compute_head_radius(
     identity: Float[Tensor, "batch identity"], rows: int, columns: int
 ) -> Float[Tensor, "batch 1 rows columns"]:
     """Radius of bald heads; `identity` holds standard normal numbers [batch, 43], zero the mean."""
-    azimuth, elevation = (axis.to(identity) for axis in chart(rows, columns))
+    azimuth, elevation = (axis.to(identity) for axis in compute_chart_angles(rows, columns))
     numbers = identity[:, : -len(AXES) - 1].unflatten(1, (len(BUMPS), 3))
     radius = _ellipsoid(identity[:, -len(AXES) - 1 :], azimuth, elevation)
     return (radius + _bumps(numbers, azimuth, elevation))[:, None]
-
-
-def surface(radius: Float[Tensor, "batch 1 rows columns"]) -> Surface:
-    """A radius over the chart with its unit normals."""
-    azimuth, elevation = (axis.to(radius) for axis in chart(*radius.shape[-2:]))
-    point = radius * _direction(azimuth, elevation)
-    down, right = torch.gradient(point, dim=(2, 3))
-    return Surface(radius, unit(torch.linalg.cross(down, right, dim=1)))
-
-
-def unit(vectors: Float[Tensor, "batch 3 *shape"]) -> Float[Tensor, "batch 3 *shape"]:
-    """Vectors along axis 1 divided by their length; many times faster on a CPU than F.normalize."""
-    return vectors * (vectors**2).sum(1, keepdim=True).rsqrt()
-
-
-def sample(
-    texture: Float[Tensor, "batch channels rows columns"], direction: Float[Tensor, "batch 3 h w"]
-) -> Float[Tensor, "batch channels h w"]:
-    """Values of a chart in the directions given (unit vectors in the head's axes)."""
-    azimuth = torch.atan2(direction[:, 0], direction[:, 2]) / CHART[0]
-    elevation = torch.asin(direction[:, 1].clamp(-1, 1)) / CHART[1]
-    grid = torch.stack([azimuth, -elevation], -1)
-    return F.grid_sample(texture, grid, align_corners=True, padding_mode="border")
 
 
 def _ellipsoid(

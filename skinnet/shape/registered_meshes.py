@@ -14,7 +14,7 @@ from skinnet.mesh._topology import weld
 from skinnet.mesh.mesh import Mesh
 from skinnet.mesh.repair import guess_length_unit
 from skinnet.shape.model import ShapeModel
-from skinnet.shape.similarity import similarity
+from skinnet.shape.similarity import fit_similarity
 
 ROUNDS = 3
 """Rounds of alignment to the mean; the second already changes it by less than a thousandth."""
@@ -32,7 +32,7 @@ def load_registered(
     millimetres: float | None = None,
     name: str = "model",
 ) -> ShapeModel:
-    """A model of the meshes in these files (OBJ, PLY, glTF or STL), as `from_meshes` makes it.
+    """A model of the meshes in these files (OBJ, PLY, glTF or STL), as `build_shape_model` makes it.
 
     Vertices are in the order of the first file, and those that coincide in every file are one.
     Raises `InputError` naming the file for one that cannot be read, or whose vertices or faces are
@@ -50,7 +50,7 @@ def load_registered(
     return _model(faces[:, used], first, modes, align, millimetres, name)
 
 
-def from_meshes(
+def build_shape_model(
     meshes: Sequence[Mesh],
     modes: int | None = None,
     align: bool = True,
@@ -142,7 +142,7 @@ def _model(
         millimetres=millimetres or guess_length_unit(mean, name).millimetres,
         name=name,
     )
-    return model if modes is None else model.truncated(modes)
+    return model if modes is None else model.truncate(modes)
 
 
 def _components(
@@ -164,6 +164,6 @@ def _aligned(faces: Faces) -> Faces:
     for _ in range(ROUNDS):
         target = mean - mean.mean(0)
         target = target * size / np.linalg.norm(target) + mean.mean(0)
-        faces = np.stack([similarity(face, target)(face) for face in faces])
+        faces = np.stack([fit_similarity(face, target)(face) for face in faces])
         mean = faces.mean(0)
     return faces

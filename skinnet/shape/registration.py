@@ -8,12 +8,13 @@ from jaxtyping import Bool, Float
 
 from skinnet.errors import InputError
 from skinnet.mesh.mesh import Mesh
-from skinnet.shape._icp import FitSettings, Stage, StageRecord
+from skinnet.shape._icp import Stage
 from skinnet.shape._moments import gather
-from skinnet.shape._scan_points import Surface
+from skinnet.shape._scan_points import ScanPoints
 from skinnet.shape._separable import Separable, solve
+from skinnet.shape.fit_settings import FitSettings, StageRecord
 from skinnet.shape.model import ShapeModel
-from skinnet.shape.similarity import Similarity, similarity
+from skinnet.shape.similarity import Similarity, fit_similarity
 
 LANDMARK_NOISE = 2.0
 """Standard deviation in mm that landmarks are taken to have when they start a fit."""
@@ -25,7 +26,7 @@ LANDMARK_MODES = 20
 class Registration:
     """A fitted model.
 
-    `vertices` [N, 3] in the scan's frame and unit are pose(model.shape(alpha)). `distances` [N] in
+    `vertices` [N, 3] in the scan's frame and unit are pose(model.reconstruct(alpha)). `distances` [N] in
     mm are those to the scan's surface, `kept` [N] the vertices that the last step fitted.
     `millimetres` is the length of the scan's unit as the fit's scale has it.
     """
@@ -70,7 +71,7 @@ def register(
     """
     settings = settings or FitSettings()
     pose, alpha = _begin(model, scan, landmarks, settings, start)
-    surface = Surface(scan)
+    surface = ScanPoints(scan)
     records = []
     for vertices, modes, prior in settings.stages:
         stage = Stage(model, surface, settings, alpha, vertices, modes, prior)
@@ -116,7 +117,7 @@ def from_landmarks(
         )
     vertices = [model.landmarks[name] for name in names]
     points = np.stack([landmarks[name] for name in names]).astype(np.float64)
-    start = similarity(model.mean[vertices].astype(np.float64), points)
+    start = fit_similarity(model.mean[vertices].astype(np.float64), points)
     modes = min(LANDMARK_MODES, len(model.basis))
     basis = model.basis[:modes, vertices].astype(np.float64)
     moments = gather(basis, model.mean[vertices].astype(np.float64), points)
@@ -128,7 +129,7 @@ def from_landmarks(
 
 def _finished(
     model: ShapeModel,
-    surface: Surface,
+    surface: ScanPoints,
     settings: FitSettings,
     pose: Similarity,
     alpha: Float[np.ndarray, "modes"],

@@ -17,12 +17,14 @@ class Similarity(NamedTuple):
         """Points of the source in the target's frame."""
         return np.asarray(self.scale * points @ self.rotation.T + self.translation)
 
-    def inverse(self, points: Float[np.ndarray, "*points 3"]) -> Float[np.ndarray, "*points 3"]:
+    def apply_inverse(
+        self, points: Float[np.ndarray, "*points 3"]
+    ) -> Float[np.ndarray, "*points 3"]:
         """Points of the target in the source's frame."""
         return np.asarray((points - self.translation) @ self.rotation / self.scale)
 
 
-def similarity(
+def fit_similarity(
     source: Float[np.ndarray, "points 3"],
     target: Float[np.ndarray, "points 3"],
     reflection: bool = False,

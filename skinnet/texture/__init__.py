@@ -1,0 +1,5 @@
+"""Texture spaces of face models, and textures of scans warped into them."""
+
+import lazy_loader
+
+__getattr__, __dir__, __all__ = lazy_loader.attach_stub(__name__, __file__)

@@ -10,7 +10,7 @@ TOLERANCE = 1e-3
 """How far from its mirror image a vertex may lie, as a share of the largest extent."""
 
 
-def mirror_vertices(
+def find_mirror_vertices(
     vertices: Float[np.ndarray, "vertices 3"], tolerance: float = TOLERANCE
 ) -> Int[np.ndarray, "vertices"] | None:
     """The mirror image of each vertex under x -> -x, or None if the mesh has no such symmetry.

@@ -13,9 +13,9 @@ from skinnet.mesh.closest_point import ClosestPoints, TriangleTree
 from skinnet.mesh.mesh import Mesh
 from skinnet.mesh.normals import compute_vertex_normals
 from skinnet.mesh.sampling import sample_bilinear
-from skinnet.texture.warp import TextureSpace, Warped, warp_texture
+from skinnet.texture.warp import TextureSpace, WarpedTexture, warp_texture
 
-NORMAL_LIMIT = 60.0
+MAX_NORMAL_ANGLE = 60.0
 """Degrees between the normals of model and scan from which a point is not the same one."""
 
 TORN = 1.5
@@ -41,8 +41,8 @@ def project_texture(
     fitted: Mesh,
     scan: Mesh,
     limit: float,
-    normal_limit: float = NORMAL_LIMIT,
-) -> Warped:
+    normal_limit: float = MAX_NORMAL_ANGLE,
+) -> WarpedTexture:
     """The scan's texture in the model's space, linear sRGB, masked where the scan has none.
 
     Each vertex of `fitted`, whose triangles are those of `space` in the same order, takes the

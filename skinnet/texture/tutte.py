@@ -33,7 +33,9 @@ Triangles = Int[np.ndarray, "triangles 3"]
 Partners = Int[np.ndarray, "vertices"]
 
 
-def tutte(vertices: Vertices, triangles: Triangles, mirror: Partners | None = None) -> Points:
+def compute_tutte_embedding(
+    vertices: Vertices, triangles: Triangles, mirror: Partners | None = None
+) -> Points:
     """Texture coordinates [N, 2] in [0, 1] of a face with one outer boundary, up upwards.
 
     The longest boundary lies on a circle `MARGIN` inside the unit square, spaced by arc length and
@@ -43,7 +45,7 @@ def tutte(vertices: Vertices, triangles: Triangles, mirror: Partners | None = No
     `LEAST_COTANGENT`, divided in `BALANCING` further rounds by the stretch of the last embedding
     (after Yoshizawa et al. 2004, made symmetric in the two ends).
 
-    With `mirror`, the partner of each vertex (`mirror_vertices`), boundary and weights are averaged
+    With `mirror`, the partner of each vertex (`find_mirror_vertices`), boundary and weights are averaged
     with their mirror images, and since the solution is unique it is symmetric about u = 1/2. Edges
     whose mirror image is no edge, such as the diagonals of quads that were all split the same way,
     count `ONE_SIDED` and so do their images: the faces of what remains without them are convex,
@@ -75,7 +77,7 @@ def tutte(vertices: Vertices, triangles: Triangles, mirror: Partners | None = No
     return 0.5 + (0.5 - MARGIN) * uv
 
 
-def flipped(uv: Points, triangles: Triangles) -> int:
+def count_flipped_triangles(uv: Points, triangles: Triangles) -> int:
     """Number of triangles that are not counter-clockwise."""
     a, b, c = np.moveaxis(uv[triangles], 1, 0)
     ab, ac = b - a, c - a
@@ -95,7 +97,7 @@ def _check_values(vertices: Vertices, triangles: Triangles, mirror: Partners | N
     ):
         raise InputError(
             f"A mirror gives each of the {len(vertices)} vertices a partner whose partner it is; "
-            "find it with mirror_vertices."
+            "find it with find_mirror_vertices."
         )
 
 
@@ -253,7 +255,7 @@ def _stretch(points: Vertices, uv: Points, triangles: Triangles) -> Float[np.nda
 
 
 def _check_flips(uv: Points, triangles: Triangles) -> None:
-    count = flipped(uv, triangles)
+    count = count_flipped_triangles(uv, triangles)
     if count:
         raise InputError(
             f"{count} triangles would be flipped or empty: the mesh differs too much from its "

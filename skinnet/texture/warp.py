@@ -18,7 +18,7 @@ DENSE = 1.5
 """Source pixels along a texel from which more than one sample is taken."""
 
 
-class Warped(NamedTuple):
+class WarpedTexture(NamedTuple):
     """A picture in a texture space, float32, 0 where `mask` is False and nothing is known."""
 
     image: Float[np.ndarray, "size size channels"]
@@ -89,7 +89,7 @@ def warp_texture(
     covered: Bool[np.ndarray, "triangles"],
     texture: Shaped[np.ndarray, "height width channels"],
     most_samples: int = MOST_SAMPLES,
-) -> Warped:
+) -> WarpedTexture:
     """A picture warped into a texture space, affinely in every triangle (paper 4.2).
 
     `coordinates` are those of the triangles' corners in the picture, whose values are interpolated
@@ -111,7 +111,7 @@ def warp_texture(
     mask = np.zeros_like(space.mask)
     mask[space.mask] = covered[space.owner]
     image[mask] = values
-    return Warped(image, mask)
+    return WarpedTexture(image, mask)
 
 
 def _jacobian(

@@ -12,7 +12,7 @@ from skinnet.appearance.colour import SkinColour
 from skinnet.appearance.maps_file import save_maps
 from skinnet.appearance.skin_texture import SkinTexture
 from skinnet.mesh.mesh_file import write_mesh
-from skinnet.shape._default_model import default_model
+from skinnet.shape import load_shape_model
 from train.batch import Batch
 from train.cli import main
 from train.synthetic.faces import Lots, SyntheticFaces
@@ -42,12 +42,12 @@ SMALL = (
 def faces(tmp_path_factory: pytest.TempPathFactory) -> Path:
     """A folder of one face with its maps, as `skinnet maps` leaves it."""
     folder = tmp_path_factory.mktemp("faces")
-    model = default_model()
+    model = load_shape_model()
     f_mel, f_blood = (one[0].numpy() for one in pigments(1, SIZE))
     known = np.ones((SIZE, SIZE), bool)
     texture = SkinTexture(f_mel, f_blood, np.zeros((SIZE, SIZE, 3), np.float32), known)
     save_maps(folder / "a_maps.npz", texture, SkinColour())
-    write_mesh(folder / "a_face.obj", model.mesh(np.zeros(1)))
+    write_mesh(folder / "a_face.obj", model.build_mesh(np.zeros(1)))
     return folder
 
 

@@ -4,7 +4,7 @@ import numpy as np
 import torch
 from jaxtyping import Float
 
-from skinnet.shape.procedural_head import CHART, IDENTITY, relief
+from skinnet.shape.procedural_head import CHART_EXTENT, IDENTITY_SIZE, compute_head_radius
 from train.synthetic.body import Neck
 from train.synthetic.labelled_mesh import Part, clipped, joined, part, sheet
 from train.synthetic.labels import EYE, SKIN, TEETH
@@ -21,8 +21,8 @@ Grid = Float[np.ndarray, "rows columns"]
 
 def bare_procedural(draw: np.random.Generator) -> tuple[Part, Neck]:
     """A head without hair, its eyes open and its mouth closed or smiling, and its neck."""
-    identity = draw.normal(0, 1, IDENTITY).clip(-2.5, 2.5)
-    radius = relief(torch.from_numpy(identity[None]), ROWS, COLUMNS)[0, 0].numpy()
+    identity = draw.normal(0, 1, IDENTITY_SIZE).clip(-2.5, 2.5)
+    radius = compute_head_radius(torch.from_numpy(identity[None]), ROWS, COLUMNS)[0, 0].numpy()
     azimuth, elevation, radius = _closed(radius)
     eyes = _eyes(azimuth, elevation, draw.uniform(0.03, 0.06))
     smile = draw.choice([0.0, draw.uniform(0.02, 0.075)])
@@ -39,10 +39,10 @@ def bare_procedural(draw: np.random.Generator) -> tuple[Part, Neck]:
 
 def _closed(radius: Grid) -> tuple[Grid, Grid, Grid]:
     """The chart with the back of the head and the poles, where it repeats its border."""
-    azimuth = np.linspace(-CHART[0], CHART[0], COLUMNS)
-    back = np.linspace(CHART[0], np.pi, BACK + 1)[1:]
+    azimuth = np.linspace(-CHART_EXTENT[0], CHART_EXTENT[0], COLUMNS)
+    back = np.linspace(CHART_EXTENT[0], np.pi, BACK + 1)[1:]
     azimuth = np.concatenate([-back[::-1], azimuth, back])
-    elevation = np.linspace(CHART[1], -CHART[1], ROWS)
+    elevation = np.linspace(CHART_EXTENT[1], -CHART_EXTENT[1], ROWS)
     elevation = np.concatenate([[np.pi / 2], elevation, [-np.pi / 2]])
     radius = np.pad(radius, ((1, 1), (BACK, BACK)), "edge")
     radius[[0, -1]] = radius[[1, -2]].mean(1, keepdims=True)

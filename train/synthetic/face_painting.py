@@ -9,7 +9,7 @@ from jaxtyping import Float
 from torch import Tensor
 
 from skinnet.network.autoencoder import F_BLOOD_MAX, F_MEL_MAX
-from skinnet.shape.procedural_head import chart
+from skinnet.shape import compute_chart_angles
 from train.synthetic.scene_sampling import CHART
 from train.synthetic.tensors import column, soft_step
 
@@ -38,7 +38,7 @@ class Paint(NamedTuple):
 
 def paint_skin(lot: dict[str, Tensor]) -> Paint:
     """The charts of a batch of lots."""
-    azimuth, elevation = (axis.to(lot["f_mel"].device) for axis in chart(*CHART))
+    azimuth, elevation = (axis.to(lot["f_mel"].device) for axis in compute_chart_angles(*CHART))
     regions = _regions(lot["f_mel"].device)
     melanin, hemoglobin = _pigments(lot, regions)
     paint, cover = torch.zeros_like(melanin).expand(-1, 3, -1, -1), torch.zeros_like(melanin)
@@ -51,7 +51,7 @@ def paint_skin(lot: dict[str, Tensor]) -> Paint:
 
 @cache
 def _regions(device: torch.device) -> Float[Tensor, "regions rows columns"]:
-    azimuth, elevation = (axis.to(device) for axis in chart(*CHART))
+    azimuth, elevation = (axis.to(device) for axis in compute_chart_angles(*CHART))
     return torch.stack([region(azimuth, elevation, *place) for place in REGIONS])
 
 
@@ -86,7 +86,7 @@ def enlarged(small: Chart) -> Chart:
 
 
 def _moles(lot: dict[str, Tensor]) -> Tensor:
-    azimuth, elevation = (axis.to(lot["f_mel"].device) for axis in chart(*CHART))
+    azimuth, elevation = (axis.to(lot["f_mel"].device) for axis in compute_chart_angles(*CHART))
     at, height, radius, factor = (part[..., None, None] for part in lot["moles"].unbind(2))
     across = torch.exp(-(((azimuth - at) / radius) ** 2) / 2)
     along = torch.exp(-(((elevation - height) / radius) ** 2) / 2)

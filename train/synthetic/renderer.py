@@ -10,7 +10,7 @@ from torch import Tensor
 
 from skinnet.network.autoencoder import SHADING_MAX, SkinMaps
 from skinnet.physics import Capture, SkinDecoder
-from skinnet.shape.procedural_head import CHART, unit
+from skinnet.shape.procedural_head import CHART_EXTENT
 from train.batch import Batch
 from train.synthetic.face_painting import Paint, enlarged, paint_skin
 from train.synthetic.labels import CLOTH, EYE, GLASSES, HAIR, MOUTH, SKIN, TEETH
@@ -55,7 +55,7 @@ def render(lot: dict[str, Tensor], decoder: SkinDecoder, split: str = "train") -
     over = _sampled(paint_skin(lot), ground.chart)
     skin = (ground.label == SKIN).float()
     share = skin * (1 - over.cover)
-    normal = unit(ground.normal + skin * F.pad(over.bump, (0, 0, 0, 0, 0, 1)))
+    normal = _normalise(ground.normal + skin * F.pad(over.bump, (0, 0, 0, 0, 0, 1)))
     oil = torch.where(skin > 0, over.oil, _GLOSS.to(skin)[ground.label.long()])
     lit = shade(lot, normal, ground.openness, lot["seen"], oil)
     matrix, capture = pictured(lot, decoder.camera, split)
@@ -98,7 +98,7 @@ def _ground(lot: dict[str, Tensor]) -> Ground:
 
 def normals(lot: dict[str, Tensor]) -> Image:
     """Unit normals of the geometry buffers, ahead where there is none."""
-    return unit(lot["normal"].movedim(-1, 1).float() + 1e-3)
+    return _normalise(lot["normal"].movedim(-1, 1).float() + 1e-3)
 
 
 def openness(lot: dict[str, Tensor]) -> Map:
@@ -108,7 +108,7 @@ def openness(lot: dict[str, Tensor]) -> Map:
 
 def _sampled(paint: Paint, place: Float[Tensor, "batch 2 height width"]) -> Paint:
     """The charts' values at places in azimuth and elevation."""
-    grid = torch.stack([place[:, 0] / CHART[0], -place[:, 1] / CHART[1]], -1)
+    grid = torch.stack([place[:, 0] / CHART_EXTENT[0], -place[:, 1] / CHART_EXTENT[1]], -1)
     over = F.grid_sample(torch.cat(paint, 1), grid, align_corners=True, padding_mode="border")
     return Paint(*over.split([one.shape[1] for one in paint], 1))
 
@@ -183,3 +183,8 @@ def _flipped(batch: Batch, flip: Tensor) -> Batch:
 
     truth = SkinMaps(*map(turned, batch.truth))
     return Batch(turned(batch.photograph), truth.mask, truth, batch.capture, turned(batch.albedo))
+
+
+def _normalise(vectors: Float[Tensor, "batch 3 *shape"]) -> Float[Tensor, "batch 3 *shape"]:
+    """Divide vectors along axis 1 by their length; many times faster on a CPU than F.normalize."""
+    return vectors * (vectors**2).sum(1, keepdim=True).rsqrt()

@@ -21,8 +21,7 @@ from scipy.ndimage import binary_fill_holes, distance_transform_edt
 from skinnet.appearance.hybrid import HybridModel
 from skinnet.errors import InputError
 from skinnet.pipeline._maps import embedded
-from skinnet.shape._default_model import default_model
-from skinnet.shape.procedural_head import chart
+from skinnet.shape import compute_chart_angles, load_shape_model
 from train.fitted import shrunk
 from train.synthetic.face_painting import beard
 from train.synthetic.model_skins import Skins, save_skins
@@ -166,7 +165,7 @@ def _taps(count: int, width: float) -> Float[np.ndarray, "n n"]:
 
 def bare() -> tuple[Chart, Chart]:
     """Where a chart has bare skin, lips among it, and where it has lips, in [0, 1]."""
-    azimuth, elevation = chart(*CHART)
+    azimuth, elevation = compute_chart_angles(*CHART)
     lips = _ellipse(*LIPS)
     full = {"moustache": 1.0, "beard": 1.0, "stubble": 0.0, "beard_grain": 1.0}
     hair = beard(
@@ -179,7 +178,7 @@ def bare() -> tuple[Chart, Chart]:
 
 
 def _ellipse(at: float, height: float, wide: float, tall: float) -> Chart:
-    azimuth, elevation = chart(*CHART)
+    azimuth, elevation = compute_chart_angles(*CHART)
     across = (azimuth.abs() - at if at else azimuth) / wide
     return soft_step(1 - torch.hypot(across, (elevation - height) / tall), 0.2).numpy()
 
@@ -189,7 +188,7 @@ def procedural_place(own_uv: bool = False) -> Place:
 
     By default that is `skinnet maps`' embedding of the face; with `own_uv` it is the chart itself.
     """
-    model = default_model()
+    model = load_shape_model()
     space = embedded(model, own_uv)
     place = LinearNDInterpolator(model.uv, space.uv)
     axes = (np.linspace(0, 1, n) for n in CHART[::-1])

@@ -164,7 +164,7 @@ def test_the_joint_model_too_is_measured_as_if_refitted(
         error = rms(refit.reconstruct(beta), face.albedo(stack.colour), model.mask)
         assert found.generalisation.values[row, index] == pytest.approx(error, rel=2e-3)
         assert found.shape_generalisation is not None
-        moved = 10 * (shape.shape(alpha) - shape.shape(alphas[index]))
+        moved = 10 * (shape.reconstruct(alpha) - shape.reconstruct(alphas[index]))
         error = float(np.sqrt((moved**2).sum(1).mean()))
         assert found.shape_generalisation.values[row, index] == pytest.approx(error, rel=2e-3)
 
@@ -180,10 +180,10 @@ def test_joint_specificity_is_that_of_decoded_samples(
         for place, count in enumerate(found.specificity.counts):
             cut = np.where(np.arange(len(gamma)) < count, gamma, 0)
             alpha, beta = joint.reconstruct(cut)
-            face, surface = model.reconstruct(beta), shape.shape(alpha)
+            face, surface = model.reconstruct(beta), shape.reconstruct(alpha)
             nearest = min(rms(face, other, model.mask) for other in albedos(stack))
             assert found.specificity.values[place, row] == pytest.approx(nearest, rel=2e-3)
-            moved = [10 * (surface - shape.shape(other)) for other in alphas]
+            moved = [10 * (surface - shape.reconstruct(other)) for other in alphas]
             nearest = min(float(np.sqrt((step**2).sum(1).mean())) for step in moved)
             assert found.shape_specificity.values[place, row] == pytest.approx(nearest, rel=2e-3)
 

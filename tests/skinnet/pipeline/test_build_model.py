@@ -31,10 +31,10 @@ def test_models_measures_and_pictures_are_there(model: Path) -> None:
 
 
 def test_a_joint_model_is_built_where_the_shape_model_is_named(maps: Path, tmp_path: Path) -> None:
-    from skinnet.shape._default_model import default_model
+    from skinnet.shape import load_shape_model
     from skinnet.shape.model_formats import save_shape_model
 
-    save_shape_model(tmp_path / "shape.npz", default_model())
+    save_shape_model(tmp_path / "shape.npz", load_shape_model())
     command = ["build-model", str(maps), "-o", str(tmp_path / "out"), "--model.samples=3"]
     assert main([*command, "--joint=true", "--shape", str(tmp_path / "shape.npz")]) == 0
     record = json.loads((tmp_path / "out" / "measures.json").read_text())

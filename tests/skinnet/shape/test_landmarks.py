@@ -13,7 +13,7 @@ from skinnet.mesh.mesh_file import read_mesh
 from skinnet.shape.landmarks import (
     IBUG,
     check_landmarks,
-    ibug_name,
+    name_ibug_point,
     read_landmark_vertices,
     read_landmarks,
     write_landmarks,
@@ -48,8 +48,8 @@ def written(path: Path, content: object) -> Path:
 
 def test_names_are_those_of_ibug() -> None:
     assert len(IBUG) == 20
-    assert ibug_name(36) == "right_eye_outer" and ibug_name(0) == "ibug_0"
-    assert len({ibug_name(number) for number in range(68)}) == 68
+    assert name_ibug_point(36) == "right_eye_outer" and name_ibug_point(0) == "ibug_0"
+    assert len({name_ibug_point(number) for number in range(68)}) == 68
 
 
 @pytest.mark.parametrize("suffix", [".csv", ".json"])
@@ -161,7 +161,7 @@ def test_too_few_landmarks_are_refused_with_the_missing_ones() -> None:
 
 
 def test_a_model_without_landmarks_says_how_to_give_them() -> None:
-    bare = small_model().region(np.arange(63) < 14)
+    bare = small_model().crop(np.arange(63) < 14)
     with pytest.raises(InputError, match=r"small has no landmarks; give a \.json file of names"):
         check_landmarks(points(), bare)
 

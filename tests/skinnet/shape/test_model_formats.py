@@ -16,11 +16,11 @@ from skinnet.errors import InputError
 from skinnet.mesh._orientation import flip_triangles, is_inside_out
 from skinnet.mesh.mesh import Mesh
 from skinnet.mesh.mesh_file import write_mesh
-from skinnet.shape._default_model import default_model
+from skinnet.shape._default_model import build_default_model
 from skinnet.shape.landmarks import IBUG
 from skinnet.shape.model import ShapeModel
 from skinnet.shape.model_formats import load_shape_model, save_shape_model
-from skinnet.shape.registered_meshes import from_meshes
+from skinnet.shape.registered_meshes import build_shape_model
 
 Writer = Callable[[Path, dict[str, Any]], None]
 
@@ -108,7 +108,7 @@ def subjects(count: int, modes: int = 3) -> list[Mesh]:
     lot = np.random.default_rng(2)
     alphas = lot.normal(size=(count, modes)) * np.sqrt(model.variances)
     alphas -= alphas.mean(0)
-    return [model.mesh(alpha) for alpha in alphas]
+    return [model.build_mesh(alpha) for alpha in alphas]
 
 
 def test_our_own_file_comes_back_exactly(tmp_path: Path) -> None:
@@ -124,7 +124,7 @@ def test_our_own_file_comes_back_exactly(tmp_path: Path) -> None:
 
 
 def test_no_path_is_the_embedded_face() -> None:
-    assert load_shape_model() is default_model()
+    assert load_shape_model() is build_default_model()
     assert len(load_shape_model(modes=5).variances) == 5
 
 
@@ -198,7 +198,7 @@ def test_faults_in_the_folder_of_ict_facekit_name_the_file(tmp_path: Path) -> No
 
 def test_a_model_of_registered_meshes_has_their_modes(tmp_path: Path) -> None:
     meshes = subjects(6)
-    model = from_meshes(meshes, align=False, name="six")
+    model = build_shape_model(meshes, align=False, name="six")
     assert len(model.variances) == 3 and model.millimetres == 1
     assert np.allclose(model.mean, small_model().mean, atol=1e-6)
     assert same_span(model.basis, small_model().basis)
@@ -214,7 +214,7 @@ def test_a_folder_of_registered_meshes_is_a_model(tmp_path: Path, suffix: str) -
     for number, mesh in enumerate(meshes):
         write_mesh(tmp_path / f"{number}{suffix}", mesh)
     model = load_shape_model(tmp_path, align=False, modes=2)
-    expected = from_meshes(meshes, align=False)
+    expected = build_shape_model(meshes, align=False)
     assert np.allclose(model.mean, expected.mean, atol=1e-6)
     assert np.array_equal(model.triangles, expected.triangles)
     assert np.allclose(model.variances, expected.variances[:2], rtol=1e-5)
@@ -237,20 +237,20 @@ def test_alignment_takes_pose_and_size_out_of_the_modes() -> None:
         turn *= np.sign(np.diag(turn))
         vertices = (1 + 0.05 * lot.normal()) * mesh.vertices @ turn.T + 30 * lot.normal(size=3)
         posed.append(Mesh(vertices, mesh.triangles, name=mesh.name))
-    free, aligned = from_meshes(posed, align=False), from_meshes(posed)
+    free, aligned = build_shape_model(posed, align=False), build_shape_model(posed)
     assert aligned.variances.sum() < 0.1 * free.variances.sum()
-    assert aligned.variances.sum() < 2 * from_meshes(subjects(6)).variances.sum()
+    assert aligned.variances.sum() < 2 * build_shape_model(subjects(6)).variances.sum()
 
 
 def test_fewer_subjects_than_modes_are_refused(tmp_path: Path) -> None:
     with pytest.raises(InputError, match="six: 6 subjects give at most 5 modes, and 6 are asked"):
-        from_meshes(subjects(6), modes=6, name="six")
+        build_shape_model(subjects(6), modes=6, name="six")
     with pytest.raises(InputError, match="six has 3 modes, and 5 are asked for"):
-        from_meshes(subjects(6), modes=5, align=False, name="six")
+        build_shape_model(subjects(6), modes=5, align=False, name="six")
     with pytest.raises(InputError, match="1 subjects give at most 0 modes"):
-        from_meshes(subjects(1))
+        build_shape_model(subjects(1))
     with pytest.raises(InputError, match="all subjects have the same shape"):
-        from_meshes([dome(), dome()], align=False)
+        build_shape_model([dome(), dome()], align=False)
     with pytest.raises(InputError, match=r"\d+ has no meshes"):
         load_shape_model(tmp_path)
 
@@ -259,20 +259,20 @@ def test_meshes_that_do_not_correspond_are_named(tmp_path: Path) -> None:
     one, other, last = subjects(3)
     shorter = Mesh(other.vertices[:-1], other.triangles[:10], name="b.obj")
     with pytest.raises(InputError, match=r"b\.obj has 62 vertices and small 63"):
-        from_meshes([one, shorter])
+        build_shape_model([one, shorter])
     turned_over = Mesh(last.vertices, last.triangles[::-1], name="c.obj")
     with pytest.raises(InputError, match=r"c\.obj and small have different faces"):
-        from_meshes([one, other, turned_over])
+        build_shape_model([one, other, turned_over])
     other.vertices[3] = np.nan
     with pytest.raises(InputError, match="small has vertices that are NaN"):
-        from_meshes([one, other])
+        build_shape_model([one, other])
 
 
 def test_a_unit_may_be_said_where_it_cannot_be_guessed() -> None:
     tiny = [Mesh(mesh.vertices / 60, mesh.triangles) for mesh in subjects(3)]
     with pytest.raises(InputError, match="is 3 units long, which is no face"):
-        from_meshes(tiny)
-    assert from_meshes(tiny, millimetres=60.0).millimetres == 60
+        build_shape_model(tiny)
+    assert build_shape_model(tiny, millimetres=60.0).millimetres == 60
 
 
 @pytest.mark.parametrize(
@@ -359,15 +359,15 @@ def test_python_objects_are_never_unpickled(tmp_path: Path) -> None:
 def test_more_modes_than_there_are_is_refused() -> None:
     for modes in (0, 4):
         with pytest.raises(InputError, match=f"small has 3 modes, and {modes} are asked for"):
-            small_model().truncated(modes)
+            small_model().truncate(modes)
 
 
 def test_a_region_keeps_what_lies_wholly_on_it() -> None:
     model = small_model()
     keep = model.mean[:, 1] > -1
-    part = model.region(keep)
+    part = model.crop(keep)
     assert len(part.mean) == keep.sum() == 35 and len(part.triangles) == 48
-    assert np.allclose(part.shape(np.ones(3)), model.shape(np.ones(3))[keep])
+    assert np.allclose(part.reconstruct(np.ones(3)), model.reconstruct(np.ones(3))[keep])
     assert set(part.landmarks) == {"right_eye_outer", "left_eye_outer", "nose_tip"}
     for name, vertex in part.landmarks.items():
         assert np.array_equal(part.mean[vertex], model.mean[model.landmarks[name]])

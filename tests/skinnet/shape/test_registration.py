@@ -6,7 +6,7 @@ import pytest
 from benchmarks.fit import big_model, case
 from skinnet.errors import InputError
 from skinnet.mesh.mesh import Mesh
-from skinnet.shape._icp import FitSettings
+from skinnet.shape.fit_settings import FitSettings
 from skinnet.shape.registration import from_landmarks, register
 
 VERTICES, MODES = 1500, 12
@@ -47,7 +47,9 @@ def test_the_record_says_what_was_done(model):
     assert len(told) == 2
     assert "a made scan: 400 vertices, 5 modes" in told[0]
     assert found.vertices.shape == (VERTICES, 3)
-    np.testing.assert_allclose(found.pose(model.shape(found.alpha)), found.vertices, rtol=1e-4)
+    np.testing.assert_allclose(
+        found.pose(model.reconstruct(found.alpha)), found.vertices, rtol=1e-4
+    )
     assert found.kept.mean() <= 0.8 + 1 / VERTICES
     assert found.rms == pytest.approx(np.sqrt(np.mean(found.distances[found.kept] ** 2)))
 
@@ -78,7 +80,7 @@ def test_landmarks_alone_give_pose_and_size(model):
     pose, alpha = from_landmarks(model, made.landmarks)
     assert pose.scale == pytest.approx(made.pose.scale, rel=0.05)
     rows = [model.landmarks[name] for name in made.landmarks]
-    error = pose(model.shape(alpha))[rows] - np.stack(list(made.landmarks.values()))
+    error = pose(model.reconstruct(alpha))[rows] - np.stack(list(made.landmarks.values()))
     assert np.sqrt(np.mean(error**2)) / made.pose.scale < 1.0
 
 

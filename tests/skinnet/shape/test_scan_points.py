@@ -4,8 +4,8 @@ import numpy as np
 import trimesh
 
 from skinnet.mesh.mesh import Mesh
-from skinnet.shape._scan_points import DENSE, Surface, spikes
-from skinnet.shape.similarity import similarity
+from skinnet.shape._scan_points import DENSE, ScanPoints, spikes
+from skinnet.shape.similarity import fit_similarity
 
 
 def sphere(subdivisions: int = 4) -> Mesh:
@@ -22,7 +22,7 @@ def closest(mesh: Mesh, query: np.ndarray) -> float:
 
 def test_distances_to_a_subdivided_sphere():
     ball = sphere()
-    surface = Surface(ball)
+    surface = ScanPoints(ball)
     assert len(surface.points) >= DENSE
     draw = np.random.default_rng(0)
     queries = draw.normal(size=(40, 3))
@@ -35,7 +35,7 @@ def test_distances_to_a_subdivided_sphere():
 def test_the_open_edge_of_a_half_sphere():
     ball = sphere()
     upper = ball.triangles[(ball.vertices[ball.triangles][..., 2] > -1e-9).all(1)]
-    surface = Surface(Mesh(ball.vertices, upper, name="a half sphere"))
+    surface = ScanPoints(Mesh(ball.vertices, upper, name="a half sphere"))
     below = np.array([[1.2, 0.0, -0.5], [0.0, 0.0, 1.1]])
     nearest = surface.nearest(below)
     assert nearest.boundary.tolist() == [True, False]
@@ -47,7 +47,7 @@ def test_spikes_are_found_and_cut_off():
     bent = ball.vertices.copy()
     bent[100] *= 1.8
     assert np.flatnonzero(spikes(bent, ball.triangles)).tolist() == [100]
-    surface = Surface(Mesh(bent, ball.triangles, name="a sphere with a spike"))
+    surface = ScanPoints(Mesh(bent, ball.triangles, name="a sphere with a spike"))
     assert np.linalg.norm(surface.points, axis=1).max() < 1.01
 
 
@@ -64,11 +64,11 @@ def test_similarity_and_the_best_mirrored_one():
     turn = np.linalg.qr(draw.normal(size=(3, 3)))[0]
     turn *= np.sign(np.linalg.det(turn))
     target = 3 * source @ turn.T + [1, 2, 3]
-    found = similarity(source, target)
+    found = fit_similarity(source, target)
     np.testing.assert_allclose(found(source), target, atol=1e-12)
-    np.testing.assert_allclose(found.inverse(target), source, atol=1e-12)
-    mirrored = similarity(source * [-1, 1, 1], target, reflection=True)
+    np.testing.assert_allclose(found.apply_inverse(target), source, atol=1e-12)
+    mirrored = fit_similarity(source * [-1, 1, 1], target, reflection=True)
     np.testing.assert_allclose(mirrored(source * [-1, 1, 1]), target, atol=1e-12)
     assert np.linalg.det(mirrored.rotation) < 0
-    plain = similarity(source * [-1, 1, 1], target)
+    plain = fit_similarity(source * [-1, 1, 1], target)
     assert np.abs(plain(source * [-1, 1, 1]) - target).max() > 0.5

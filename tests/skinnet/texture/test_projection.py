@@ -10,7 +10,7 @@ from skinnet.errors import InputError
 from skinnet.images import srgb_to_linear
 from skinnet.mesh.mesh import Mesh
 from skinnet.texture.projection import project_texture
-from skinnet.texture.warp import TextureSpace, Warped
+from skinnet.texture.warp import TextureSpace, WarpedTexture
 
 SIZE = 64
 
@@ -32,7 +32,9 @@ def moved(mesh: Mesh, *by: float) -> Mesh:
     return replace(mesh, vertices=mesh.vertices * [0.8, 0.8, 1] + by)
 
 
-def projected(fitted: Mesh, scan: Mesh, limit: float = 0.1, normal_limit: float = 60.0) -> Warped:
+def projected(
+    fitted: Mesh, scan: Mesh, limit: float = 0.1, normal_limit: float = 60.0
+) -> WarpedTexture:
     assert fitted.uv is not None and fitted.uv_triangles is not None
     space = TextureSpace(fitted.uv, fitted.uv_triangles, SIZE)
     return project_texture(space, fitted, scan, limit, normal_limit)

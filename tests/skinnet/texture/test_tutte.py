@@ -9,8 +9,8 @@ from hypothesis import strategies as st
 
 from benchmarks.texture import sheet
 from skinnet.errors import InputError
-from skinnet.texture.mirror import mirror_vertices
-from skinnet.texture.tutte import MARGIN, flipped, tutte
+from skinnet.texture.mirror import find_mirror_vertices
+from skinnet.texture.tutte import MARGIN, compute_tutte_embedding, count_flipped_triangles
 
 VERTICES, TRIANGLES = sheet(24, 31)
 
@@ -22,24 +22,26 @@ def asymmetry(uv: np.ndarray, mirror: np.ndarray) -> float:
 @pytest.mark.parametrize("columns", [24, 25])
 def test_no_triangle_is_flipped_and_sides_mirror_each_other(columns: int) -> None:
     vertices, triangles = sheet(columns, 31)
-    mirror = mirror_vertices(vertices)
+    mirror = find_mirror_vertices(vertices)
     assert mirror is not None
-    uv = tutte(vertices, triangles, mirror)
-    assert flipped(uv, triangles) == 0 and asymmetry(uv, mirror) < 1e-12
+    uv = compute_tutte_embedding(vertices, triangles, mirror)
+    assert count_flipped_triangles(uv, triangles) == 0 and asymmetry(uv, mirror) < 1e-12
     middle = mirror == np.arange(len(uv))
     assert middle.any() == (columns == 25) and np.allclose(uv[middle, 0], 0.5, atol=1e-12)
 
 
 @pytest.mark.parametrize("with_mirror", [True, False])
 def test_up_is_up_and_the_right_side_lies_left(with_mirror: bool) -> None:
-    uv = tutte(VERTICES, TRIANGLES, mirror_vertices(VERTICES) if with_mirror else None)
+    uv = compute_tutte_embedding(
+        VERTICES, TRIANGLES, find_mirror_vertices(VERTICES) if with_mirror else None
+    )
     assert np.corrcoef(uv[:, 0], VERTICES[:, 0])[0, 1] > 0.9
     assert np.corrcoef(uv[:, 1], VERTICES[:, 1])[0, 1] > 0.9
     assert (uv[VERTICES[:, 0] < -10, 0] < 0.5).all()
 
 
 def test_the_outer_boundary_lies_on_a_circle_by_arc_length() -> None:
-    uv = tutte(VERTICES, TRIANGLES)
+    uv = compute_tutte_embedding(VERTICES, TRIANGLES)
     x, y, _ = VERTICES.T
     side = (np.abs(x) == 80) | (np.abs(y) == 110)
     radius = np.linalg.norm(uv - 0.5, axis=1)
@@ -53,7 +55,7 @@ def test_the_outer_boundary_lies_on_a_circle_by_arc_length() -> None:
 
 
 def test_texture_is_shared_out_more_evenly_than_by_uniform_weights() -> None:
-    uv = tutte(VERTICES, TRIANGLES, mirror_vertices(VERTICES))
+    uv = compute_tutte_embedding(VERTICES, TRIANGLES, find_mirror_vertices(VERTICES))
     a, b, c = np.moveaxis(VERTICES[TRIANGLES], 1, 0)
     area = np.linalg.norm(np.cross(b - a, c - a), axis=1)
     p, q, r = np.moveaxis(uv[TRIANGLES], 1, 0)
@@ -68,29 +70,31 @@ def test_any_mesh_with_a_disc_s_topology_keeps_its_orientation(seed: int) -> Non
     vertices, triangles = sheet(9, 11)
     crumpled = vertices + generator.normal(0, 3, vertices.shape)
     swapped = triangles[generator.permutation(len(triangles))]
-    uv = tutte(crumpled, np.roll(swapped, seed % 3, 1))
-    assert flipped(uv, triangles) == 0 and 0 < uv.min() and uv.max() < 1
+    uv = compute_tutte_embedding(crumpled, np.roll(swapped, seed % 3, 1))
+    assert count_flipped_triangles(uv, triangles) == 0 and 0 < uv.min() and uv.max() < 1
 
 
 def test_mirror_is_found_up_to_a_tolerance_or_not_at_all() -> None:
-    mirror = mirror_vertices(VERTICES + np.random.default_rng(0).normal(0, 0.01, VERTICES.shape))
+    mirror = find_mirror_vertices(
+        VERTICES + np.random.default_rng(0).normal(0, 0.01, VERTICES.shape)
+    )
     assert mirror is not None
     assert np.allclose(VERTICES[mirror], VERTICES * [-1, 1, 1], atol=1e-9)
-    assert mirror_vertices(VERTICES + [3.0, 0, 0]) is None
+    assert find_mirror_vertices(VERTICES + [3.0, 0, 0]) is None
 
 
 def test_a_nearly_symmetric_mesh_gets_an_exactly_symmetric_embedding() -> None:
     rough = VERTICES + np.random.default_rng(0).normal(0, 0.02, VERTICES.shape)
-    mirror = mirror_vertices(rough)
+    mirror = find_mirror_vertices(rough)
     assert mirror is not None
-    uv = tutte(rough, TRIANGLES, mirror)
-    assert asymmetry(uv, mirror) < 1e-12 and flipped(uv, TRIANGLES) == 0
+    uv = compute_tutte_embedding(rough, TRIANGLES, mirror)
+    assert asymmetry(uv, mirror) < 1e-12 and count_flipped_triangles(uv, TRIANGLES) == 0
 
 
 @given(st.integers(0, 10**6))
 def test_quads_may_be_split_as_they_like(seed: int) -> None:
     vertices, triangles = sheet(14, 17)
-    mirror = mirror_vertices(vertices)
+    mirror = find_mirror_vertices(vertices)
     assert mirror is not None
     first, second = np.split(triangles, 2)
     (a, b, c), d = first.T, second[:, 2]
@@ -98,19 +102,19 @@ def test_quads_may_be_split_as_they_like(seed: int) -> None:
     first = np.where(other[:, None], np.stack([a, b, d], 1), first)
     second = np.where(other[:, None], np.stack([b, c, d], 1), second)
     triangles = np.concatenate([first, second])
-    uv = tutte(vertices, triangles, mirror)
-    assert flipped(uv, triangles) == 0 and asymmetry(uv, mirror) < 1e-12
+    uv = compute_tutte_embedding(vertices, triangles, mirror)
+    assert count_flipped_triangles(uv, triangles) == 0 and asymmetry(uv, mirror) < 1e-12
 
 
 def test_half_a_quad_on_one_side_of_the_boundary_is_borne() -> None:
-    mirror = mirror_vertices(VERTICES)
+    mirror = find_mirror_vertices(VERTICES)
     assert mirror is not None
     quads = len(TRIANGLES) // 2
     left, right = 5, 17  # of the 23 quads along the top
     notch = [left, left + quads, right + quads]
     triangles = np.delete(TRIANGLES, notch, 0)
-    uv = tutte(VERTICES, triangles, mirror)
-    assert flipped(uv, triangles) == 0 and asymmetry(uv, mirror) < 1e-12
+    uv = compute_tutte_embedding(VERTICES, triangles, mirror)
+    assert count_flipped_triangles(uv, triangles) == 0 and asymmetry(uv, mirror) < 1e-12
 
 
 def tube() -> tuple[np.ndarray, np.ndarray]:
@@ -146,20 +150,20 @@ BAD = {
 @pytest.mark.parametrize("sentence", BAD)
 def test_what_is_no_disc_is_refused(sentence: str) -> None:
     with pytest.raises(InputError, match=sentence):
-        tutte(*BAD[sentence])
+        compute_tutte_embedding(*BAD[sentence])
 
 
 def test_a_mirror_that_does_not_fit_is_refused() -> None:
-    mirror = mirror_vertices(VERTICES)
+    mirror = find_mirror_vertices(VERTICES)
     assert mirror is not None
-    with pytest.raises(InputError, match="mirror_vertices"):
-        tutte(VERTICES, TRIANGLES, np.roll(mirror, 1))
+    with pytest.raises(InputError, match="find_mirror_vertices"):
+        compute_tutte_embedding(VERTICES, TRIANGLES, np.roll(mirror, 1))
     # A cut in one side only.
     cut = np.delete(TRIANGLES, 200, 0)
     with pytest.raises(InputError, match="boundary is not its own mirror image"):
-        tutte(VERTICES, cut, mirror)
+        compute_tutte_embedding(VERTICES, cut, mirror)
     with pytest.raises(InputError, match="differs too much from its mirror image"):
-        tutte(VERTICES, TRIANGLES, np.arange(len(VERTICES)))
+        compute_tutte_embedding(VERTICES, TRIANGLES, np.arange(len(VERTICES)))
 
 
 def test_the_face_of_ict_facekit_is_embedded(shared_data: Path) -> None:
@@ -167,9 +171,9 @@ def test_the_face_of_ict_facekit_is_embedded(shared_data: Path) -> None:
         vertices, triangles = file["verts"][:9409].astype(np.float64), file["tris"].astype(np.int64)
         names = file["landmarks68"]
     triangles = triangles[(triangles < 9409).all(1)]
-    mirror = mirror_vertices(vertices)
+    mirror = find_mirror_vertices(vertices)
     assert mirror is not None and len(triangles) % 2 == 1  # half a quad too many on one side
-    uv = tutte(vertices, triangles, mirror)
-    assert flipped(uv, triangles) == 0 and asymmetry(uv, mirror) < 1e-6
+    uv = compute_tutte_embedding(vertices, triangles, mirror)
+    assert count_flipped_triangles(uv, triangles) == 0 and asymmetry(uv, mirror) < 1e-6
     brow, chin, right, left = uv[names[[27, 8, 36, 45]]]
     assert brow[1] > right[1] > chin[1] and right[0] < 0.5 < left[0]

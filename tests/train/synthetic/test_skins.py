@@ -14,7 +14,7 @@ from skinnet.appearance.skin_texture import SkinTexture
 from skinnet.appearance.stack_writer import write_stack
 from skinnet.errors import InputError
 from skinnet.physics import load_spectrum_to_srgb
-from skinnet.shape.procedural_head import chart
+from skinnet.shape import compute_chart_angles
 from train.synthetic.face_painting import paint_skin
 from train.synthetic.faces import Lots, SyntheticFaces
 from train.synthetic.model_skins import Skins, load_skins, save_skins
@@ -58,7 +58,7 @@ def skins(model: HybridModel, place: np.ndarray) -> Skins:
 
 
 def texel(azimuth: float, elevation: float) -> tuple[int, int]:
-    across, along = chart(*CHART)
+    across, along = compute_chart_angles(*CHART)
     return int((along - elevation).abs().argmin()), int((across - azimuth).abs().argmin())
 
 
@@ -95,7 +95,7 @@ def test_portraits_features_come_to_the_charts(shared_data: Path) -> None:
             assert np.abs(place[texel(side, elevation)] - mean[number]).max() < 0.03
     assert np.isnan(place[texel(1.5, 0.0)]).all()
     steps = np.diff(place, axis=1)[..., 0], -np.diff(place, axis=0)[..., 1]
-    face = np.abs(chart(*CHART)[1].ravel().numpy()) < 1.0
+    face = np.abs(compute_chart_angles(*CHART)[1].ravel().numpy()) < 1.0
     assert all(np.nanmin(step[face[: len(step)]]) > 0 for step in steps)  # nothing folds
 
 
