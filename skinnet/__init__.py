@@ -1,66 +1,20 @@
-"""Reads a photograph as skin: melanin and hemoglobin maps instead of RGB."""
+"""Melanin and hemoglobin maps of a photograph of skin."""
 
-from importlib import import_module
-from typing import TYPE_CHECKING, Any
+from typing import Any
+
+import lazy_loader
 
 from skinnet._version import __version__ as __version__
 
-if TYPE_CHECKING:
-    from skinnet.appearance.hybrid import HybridModel
-    from skinnet.appearance.joint import JointModel
-    from skinnet.appearance.linear import LinearModel
-    from skinnet.inference.decomposer import Decomposer, Decomposition
-    from skinnet.network.autoencoder import SkinAutoencoder
-    from skinnet.network.encoder import SkinEncoder
-    from skinnet.physics.camera import SpectralCamera
-    from skinnet.physics.capture import Capture
-    from skinnet.physics.decoder import SkinDecoder
-    from skinnet.physics.lookup import SkinLookup
-    from skinnet.physics.optics import SkinOptics
-    from skinnet.physics.reflectance import SkinReflectance
-    from skinnet.shape.model import ShapeModel
+_import_public, _, __all__ = lazy_loader.attach_stub(__name__, __file__)
 
-__all__ = [
-    "Capture",
-    "Decomposer",
-    "Decomposition",
-    "HybridModel",
-    "JointModel",
-    "LinearModel",
-    "ShapeModel",
-    "SkinAutoencoder",
-    "SkinDecoder",
-    "SkinEncoder",
-    "SkinLookup",
-    "SkinOptics",
-    "SkinReflectance",
-    "SpectralCamera",
-]
-
-_ROOMS = {
-    "Capture": "physics.capture",
-    "Decomposer": "inference.decomposer",
-    "Decomposition": "inference.decomposer",
-    "HybridModel": "appearance.hybrid",
-    "JointModel": "appearance.joint",
-    "LinearModel": "appearance.linear",
-    "ShapeModel": "shape.model",
-    "SkinAutoencoder": "network.autoencoder",
-    "SkinDecoder": "physics.decoder",
-    "SkinEncoder": "network.encoder",
-    "SkinLookup": "physics.lookup",
-    "SkinOptics": "physics.optics",
-    "SkinReflectance": "physics.reflectance",
-    "SpectralCamera": "physics.camera",
-}
 _TORCH_EXTRA = frozenset({"torch", "jaxtyping", "kornia", "safetensors"})
 
 
 def __getattr__(name: str) -> Any:
-    if name not in _ROOMS:
-        raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
+    """Import a public name at its first use."""
     try:
-        return getattr(import_module(f"{__name__}.{_ROOMS[name]}"), name)
+        return _import_public(name)
     except ModuleNotFoundError as error:
         if (error.name or "").partition(".")[0] not in _TORCH_EXTRA:
             raise
@@ -70,4 +24,5 @@ def __getattr__(name: str) -> Any:
 
 
 def __dir__() -> list[str]:
+    """Public names and the version."""
     return [*__all__, "__version__"]
