@@ -7,7 +7,7 @@ from pathlib import Path
 import pytest
 import torch
 
-from benchmarks import appearance, decoder, lookup, report, spectra
+from benchmarks import appearance, calibration, decoder, lookup, report, spectra
 from benchmarks.biofacenet import BioFaceNetShape
 from skinnet.physics import PRESETS, SkinReflectance
 
@@ -132,3 +132,12 @@ def test_the_map_of_the_lookup_has_no_texel_twice() -> None:
     for rgb in lookup.face(skin, matrix, 128):
         assert rgb.dtype == torch.float32 and rgb.shape == (128, 128, 3)
         assert len(rgb.reshape(-1, 3).unique(dim=0)) == 128**2
+
+
+def test_calibration_reports_its_figures() -> None:
+    found = calibration.measure(("all",), (0.005,), seeds=1, crowds=1, count=3000)
+    columns = {"trials", "error", "worst_error", "uncertainty", "covered", "refused", "seconds"}
+    assert set(found["all_0.5%"]) == set(found["people"]) == columns
+    assert found["trials"] == 3 and found["all_0.5%"]["error"] < 0.1
+    assert found["example_error"] == found["people"]["error"] and found["lines"] > 50
+    assert "| people |" in calibration.layout(found)
