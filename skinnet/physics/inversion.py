@@ -1,7 +1,6 @@
-"""Colours back to pigment fractions, through a table of the skin's colours."""
+"""Inverse rendering: from colours back to pigment fractions, through a table of skin colours."""
 
 import copy
-import math
 from typing import NamedTuple
 
 import numpy as np
@@ -10,33 +9,42 @@ from jaxtyping import Bool, Float, Shaped
 from torch import Tensor
 
 from skinnet.errors import InputError
-from skinnet.physics._colour_surface import Surface
+from skinnet.physics._colour_surface import ColourSurface
+from skinnet.physics._pigment_axis import PigmentAxis
 from skinnet.physics.nearest_colour import NearestColour
 from skinnet.physics.reflectance import SkinReflectance
 
 F_MEL_RANGE = (0.0, 0.43)
+"""Melanosome volume fractions that the encoder can predict and that a table covers by default."""
+
 F_BLOOD_RANGE = (0.0, 0.15)
-"""Where a table is made: what the encoder's maps can hold. The paper's Table 1 has .01 to .43 and
-.02 to .07; but the middle 90 % of measured forearms hold 1.8 to 7.4 % of blood and lips hold more,
-and a fraction that is clipped is lost. From zero on, hardly any colour asks for less."""
+"""Blood volume fractions that the encoder can predict and that a table covers by default.
 
-TOLERANCE = 0.02
-"""Distance in linear RGB within which a colour is skin's: some three steps of 8 bits, and what two
-parameters leave over of a measured spectrum."""
+Table 1 of the paper has .02 to .07. The middle 90 % of measured forearms have .018 to .074, lips
+have more, and a fraction that is clipped is lost.
+"""
 
-LARGEST = 1e6
-"""A colour beyond is taken for damage, as is one that is not a number."""
+_TOLERANCE = 0.02
+"""Distance in linear RGB within which a colour is on the manifold: about three steps of 8 bits, and
+what two parameters leave unexplained of a measured spectrum."""
 
-_COLOURS, _ROWS = 1 << 14, 16
+_MAX_COLOUR = 1e6
+"""A colour beyond this is damaged, as is one that is NaN."""
+
+_COLOURS_AT_A_TIME, _ROWS_AT_A_TIME = 1 << 14, 16
 
 
 class Inversion(NamedTuple):
-    """What colours say about the skin.
+    """Pigment fractions of colours, and what the fractions leave unexplained.
 
-    `f_mel`, `f_blood`: volume fractions, within the table's range. `offset`: linear RGB of the
-    colour minus the model's (delta of the paper's equation 11). `on_manifold`: the offset is within
-    the tolerance, and the colour does not ask for fractions beyond the table. A colour that is NaN,
-    infinite or beyond 1e6 gives NaN, and is not on the manifold.
+    A colour that is NaN, infinite or beyond 1e6 gives NaN, and is not on the manifold.
+
+    Attributes:
+        f_mel: Melanosome volume fraction, within the table's range.
+        f_blood: Blood volume fraction, within the table's range.
+        offset: Colour minus the model's colour, linear RGB (delta of equation 11).
+        on_manifold: Whether the offset is within the tolerance and no fraction beyond the table
+            would bring the model closer.
     """
 
     f_mel: Float[Tensor, "*shape"]
@@ -45,30 +53,40 @@ class Inversion(NamedTuple):
     on_manifold: Bool[Tensor, "*shape"]
 
 
-class Axis(NamedTuple):
-    """Nodes of a fraction, at even steps of log(1 + f / spacing) as those of `SkinLookup`."""
-
-    low: float
-    high: float
-    nodes: int
-    spacing: float
-
-    def fractions(self, place: Float[np.ndarray, "*shape"]) -> Float[np.ndarray, "*shape"]:
-        """Fractions at places counted in nodes from the first."""
-        first = math.log1p(self.low / self.spacing)
-        step = (math.log1p(self.high / self.spacing) - first) / (self.nodes - 1)
-        fraction = self.spacing * np.expm1(first + step * place)
-        return fraction.clip(self.low, self.high).astype(place.dtype)
-
-
 class SkinInverse:
-    """Inverse rendering by a table of colours (Alotaibi & Smith 2017, section 4.4).
+    """Inverse rendering by a look-up table of colours. `SkinLookup.inverse` makes one.
 
-    The nearest node in linear RGB is the one that a search through all of them finds. Beyond the
-    paper, Newton's steps go on from it to the nearest point of the surface itself, which has the
-    closed form's colours at the nodes and halfway between them.
+    The nearest node in linear RGB is the paper's answer. Beyond the paper, Newton's steps go on
+    from the node to the closest point of the surface through the table, which has the colours of
+    the closed form at the nodes and halfway between them. It runs on the CPU in NumPy, without
+    gradients.
 
-    `colours` [mel, blood, 3] is the table. Runs on the CPU in NumPy; nothing has a gradient.
+    Args:
+        reflectance: Skin whose colours are tabulated.
+        spacing: Spacing of f_mel and of f_blood, as `SkinLookup.spacing`.
+        matrix: Spectrum-to-RGB matrix of light, camera and colour transform.
+        nodes: Nodes in f_mel and in f_blood, at least 2.
+        f_mel: Range of melanosome volume fractions, in [0, 1].
+        f_blood: Range of blood volume fractions, in [0, 1].
+
+    Attributes:
+        colours: The table [mel, blood, 3], linear RGB.
+
+    Raises:
+        InputError: For a range outside [0, 1], too few nodes, or a matrix that is zero or not
+            finite.
+
+    Source:
+        Alotaibi & Smith 2017, section 4.4.
+
+    Example:
+        >>> from skinnet.physics import SkinLookup, SkinReflectance, load_spectrum_to_srgb
+        >>> matrix = load_spectrum_to_srgb("D65", "Nikon D200")
+        >>> lookup = SkinLookup(SkinReflectance(dtype=matrix.dtype))
+        >>> rgb = lookup.reflectance(0.08, 0.04) @ matrix
+        >>> found = lookup.inverse(matrix, nodes=(64, 64))(rgb)
+        >>> round(found.f_mel.item(), 3), round(found.f_blood.item(), 3), found.on_manifold.item()
+        (0.08, 0.04, True)
     """
 
     def __init__(
@@ -80,34 +98,40 @@ class SkinInverse:
         f_mel: tuple[float, float] = F_MEL_RANGE,
         f_blood: tuple[float, float] = F_BLOOD_RANGE,
     ):
-        """Raises `InputError` for a range outside [0, 1], too few nodes, or a bad `matrix`."""
         names = ("f_mel", "f_blood")
         for name, (low, high), count in zip(names, (f_mel, f_blood), nodes, strict=True):
-            _check(name, low, high, count)
+            _check_axis(name, low, high, count)
         if not matrix.isfinite().all() or not matrix.any():
             raise InputError(
                 "The spectrum-to-RGB matrix is zero, NaN or infinite; check its light."
             )
-        self.mel, self.blood = (
-            Axis(*f_mel, nodes[0], spacing[0]),
-            Axis(*f_blood, nodes[1], spacing[1]),
-        )
-        halves = _halves(reflectance, matrix, self.mel, self.blood)
-        self.colours = torch.from_numpy(halves[::2, ::2].copy())
-        self._nearest = NearestColour(halves[::2, ::2])
-        self._nodes = np.ascontiguousarray(halves[::2, ::2].reshape(-1, 3).T)
-        self._surface = Surface(halves)
+        self._mel = PigmentAxis(*f_mel, nodes[0], spacing[0])
+        self._blood = PigmentAxis(*f_blood, nodes[1], spacing[1])
+        half_steps = _tabulate_half_steps(reflectance, matrix, self._mel, self._blood)
+        self.colours = torch.from_numpy(half_steps[::2, ::2].copy())
+        self._nearest = NearestColour(half_steps[::2, ::2])
+        self._nodes = np.ascontiguousarray(half_steps[::2, ::2].reshape(-1, 3).T)
+        self._surface = ColourSurface(half_steps)
 
     def __call__(
         self,
         rgb: Shaped[Tensor, "*shape channels"],
         refine: bool = True,
-        tolerance: float = TOLERANCE,
+        tolerance: float = _TOLERANCE,
     ) -> Inversion:
-        """Fractions of linear RGB [*shape, 3], of any size and sign.
+        """Find the fractions of colours.
 
-        `refine` goes on from the nearest node to the surface. Results have the precision and the
-        device of `rgb`, float32 at least. Raises `InputError` unless the last axis holds R, G, B.
+        Args:
+            rgb: Linear RGB [*shape, 3], of any size and sign.
+            refine: Go on from the nearest node to the closest point of the surface; otherwise the
+                answer is the node, as in the paper.
+            tolerance: Distance in linear RGB within which a colour is on the manifold.
+
+        Returns:
+            Fractions and offsets, in the precision and on the device of `rgb`, float32 at least.
+
+        Raises:
+            InputError: Unless the last axis holds R, G and B in floating point.
         """
         if rgb.ndim == 0 or rgb.shape[-1] != 3 or not rgb.is_floating_point():
             raise InputError(
@@ -116,72 +140,78 @@ class SkinInverse:
             )
         dtype = torch.promote_types(rgb.dtype, torch.float32)
         flat = rgb.detach().to("cpu", dtype).reshape(-1, 3).numpy()
-        usable = (np.abs(flat) < LARGEST).all(1)
-        found = np.full((6, len(flat)), np.nan, flat.dtype)
-        found[5] = False
-        found[:, usable] = self._invert(flat if usable.all() else flat[usable], refine, tolerance)
-        f_mel, f_blood, *offset, on = (
-            torch.from_numpy(row).reshape(rgb.shape[:-1]).to(rgb.device) for row in found
+        usable = (np.abs(flat) < _MAX_COLOUR).all(1)
+        columns = np.full((6, len(flat)), np.nan, flat.dtype)
+        columns[5] = False
+        columns[:, usable] = self._invert(flat if usable.all() else flat[usable], refine, tolerance)
+        f_mel, f_blood, *offset, on_manifold = (
+            torch.from_numpy(column).reshape(rgb.shape[:-1]).to(rgb.device) for column in columns
         )
-        return Inversion(f_mel, f_blood, torch.stack(offset, -1), on.bool())
+        return Inversion(f_mel, f_blood, torch.stack(offset, -1), on_manifold.bool())
 
     def _invert(
         self, colours: Float[np.ndarray, "colours 3"], refine: bool, tolerance: float
     ) -> Float[np.ndarray, "6 colours"]:
+        """Fractions, offset and on_manifold, one a row."""
         nearest = self._nearest(colours)
         surface, nodes = self._surface.to(colours.dtype), self._nodes.astype(colours.dtype)
-        found = np.empty((6, len(colours)), colours.dtype)
-        for start in range(0, len(colours), _COLOURS):
-            part = slice(start, start + _COLOURS)
-            place = np.stack(np.divmod(nearest[part], self.blood.nodes)).astype(colours.dtype)
-            some = np.ascontiguousarray(colours[part].T)
-            offset = some - nodes.take(nearest[part], 1)
+        result = np.empty((6, len(colours)), colours.dtype)
+        for start in range(0, len(colours), _COLOURS_AT_A_TIME):
+            part = slice(start, start + _COLOURS_AT_A_TIME)
+            position = np.stack(np.divmod(nearest[part], self._blood.nodes)).astype(colours.dtype)
+            block = np.ascontiguousarray(colours[part].T)
+            offset = block - nodes.take(nearest[part], 1)
             if refine:
-                place, offset = _refined(surface, some, place, offset)
-            found[0, part] = self.mel.fractions(place[0])
-            found[1, part] = self.blood.fractions(place[1])
-            found[2:5, part] = offset
-            # Of a node the offset may ask for half a step more without asking for another node.
-            found[5, part] = _on(surface, place, offset, tolerance, 0.0 if refine else 0.5)
-        return found
+                position, offset = _refine(surface, block, position, offset)
+            result[0, part] = self._mel.fractions(position[0])
+            result[1, part] = self._blood.fractions(position[1])
+            result[2:5, part] = offset
+            # The best point may be half a step from the nearest node: this is not out of range.
+            slack = 0.0 if refine else 0.5
+            result[5, part] = _is_on_manifold(surface, position, offset, tolerance, slack)
+        return result
 
 
-def _refined(
-    surface: Surface,
+def _refine(
+    surface: ColourSurface,
     colours: Float[np.ndarray, "3 points"],
-    place: Float[np.ndarray, "2 points"],
+    position: Float[np.ndarray, "2 points"],
     offset: Float[np.ndarray, "3 points"],
 ) -> tuple[Float[np.ndarray, "2 points"], Float[np.ndarray, "3 points"]]:
-    """Foot and offset of colours; those of the node where the steps have led farther away."""
-    foot = surface.foot(colours, place)
-    from_foot = colours - surface.colour(foot)
-    closer = (from_foot**2).sum(0) <= (offset**2).sum(0)
-    return np.where(closer, foot, place), np.where(closer, from_foot, offset)
+    """Position and offset of the closest points; those of the node where the steps diverged."""
+    closest = surface.project(colours, position)
+    refined = colours - surface.evaluate(closest)
+    better = (refined**2).sum(0) <= (offset**2).sum(0)
+    return np.where(better, closest, position), np.where(better, refined, offset)
 
 
-def _on(
-    surface: Surface,
-    place: Float[np.ndarray, "2 points"],
+def _is_on_manifold(
+    surface: ColourSurface,
+    position: Float[np.ndarray, "2 points"],
     offset: Float[np.ndarray, "3 points"],
     tolerance: float,
-    steps: float,
+    slack: float,
 ) -> Bool[np.ndarray, "points"]:
-    """Offsets within the tolerance that do not, at the border, pull by a tenth of it outward."""
-    on = np.asarray((offset**2).sum(0) <= tolerance**2)
-    outward = np.where(place <= 0, -1, 0) + np.where(place >= surface.last, 1, 0)
-    edge = np.flatnonzero(on & outward.any(0))
-    jet = surface.at(place[:, edge])
-    slopes = jet.by_row, jet.by_column
-    for out, slope, other in zip(outward[:, edge], slopes, slopes[::-1], strict=True):
-        share = (slope * other).sum(0) / ((other**2).sum(0) + np.finfo(other.dtype).tiny)
-        across = slope - share * other
+    """Whether offsets are within the tolerance and do not ask for fractions beyond the table.
+
+    At the table's border an offset has a component along the surface, outward. A tenth of the
+    tolerance is allowed, and `slack` steps.
+    """
+    on_manifold = np.asarray((offset**2).sum(0) <= tolerance**2)
+    outward = np.where(position <= 0, -1, 0) + np.where(position >= surface.last, 1, 0)
+    border = np.flatnonzero(on_manifold & outward.any(0))
+    derivatives = surface.differentiate(position[:, border])
+    tangents = derivatives.row, derivatives.column
+    for sign, tangent, other in zip(outward[:, border], tangents, tangents[::-1], strict=True):
+        share = (tangent * other).sum(0) / ((other**2).sum(0) + np.finfo(other.dtype).tiny)
+        across = tangent - share * other
         length = np.sqrt((across**2).sum(0)) + np.finfo(other.dtype).tiny
-        pull = out * (offset[:, edge] * across).sum(0) / length
-        on[edge] &= pull <= tolerance / 10 + steps * length
-    return on
+        beyond = sign * (offset[:, border] * across).sum(0) / length
+        on_manifold[border] &= beyond <= tolerance / 10 + slack * length
+    return on_manifold
 
 
-def _check(name: str, low: float, high: float, nodes: int) -> None:
+def _check_axis(name: str, low: float, high: float, nodes: int) -> None:
     if not 0 <= low < high <= 1:
         raise InputError(
             f"The range of {name} is two volume fractions in [0, 1], the lower first; got "
@@ -192,8 +222,11 @@ def _check(name: str, low: float, high: float, nodes: int) -> None:
 
 
 @torch.no_grad()
-def _halves(
-    reflectance: SkinReflectance, matrix: Float[Tensor, "wavelength 3"], mel: Axis, blood: Axis
+def _tabulate_half_steps(
+    reflectance: SkinReflectance,
+    matrix: Float[Tensor, "wavelength 3"],
+    mel: PigmentAxis,
+    blood: PigmentAxis,
 ) -> Float[np.ndarray, "mel blood 3"]:
     """Colours at the nodes and halfway between them, in float64."""
     exact = copy.deepcopy(reflectance).to("cpu", torch.float64)
@@ -201,7 +234,7 @@ def _halves(
         torch.from_numpy(axis.fractions(np.arange(0, axis.nodes - 0.75, 0.5)))
         for axis in (mel, blood)
     )
-    contracted = matrix.detach().to("cpu", torch.float64)
-    # Some rows at a time: the spectra of the whole table take as long to allocate as to make.
-    rows = [exact.bands(some[:, None], f_blood) @ contracted for some in f_mel.split(_ROWS)]
+    double = matrix.detach().to("cpu", torch.float64)
+    # A few rows at a time: allocating the spectra of a whole table takes as long as computing them.
+    rows = [exact.bands(part[:, None], f_blood) @ double for part in f_mel.split(_ROWS_AT_A_TIME)]
     return torch.cat(rows).numpy()

@@ -1,41 +1,64 @@
 """Skin reflectance tabulated over the two pigment fractions."""
 
-import math
 from typing import Any
 
+import numpy as np
 import torch
 import torch.nn.functional as F
 from jaxtyping import Float
 from torch import Tensor, nn
 
+from skinnet.physics._pigment_axis import PigmentAxis
 from skinnet.physics.inversion import F_BLOOD_RANGE, F_MEL_RANGE, SkinInverse
 from skinnet.physics.reflectance import SkinReflectance
 
-NODES = (96, 64)
+_NODES = (96, 64)
 """Nodes in f_mel and f_blood."""
 
-BLOOD_SPACING = 0.8
+_BLOOD_SPACING = 0.8
 """Spacing of f_blood times the mean absorption of the dermis' blood in cm^-1; it balances the error
-of the colour against that of its slope."""
+of the colour against that of its gradient."""
 
 
 class SkinLookup(nn.Module):
     """Reflectance on a grid over [0, 1]^2 in (f_mel, f_blood), contracted to RGB and interpolated.
 
-    Colour is linear in the spectrum, so a table of spectra times the 33 x 3 matrix of a light and a
-    camera is a table of colours, and the 33 bands are never made per pixel. Nodes stand at equal
-    steps of log(1 + f / spacing), where `spacing` is about the fraction that absorbs half of the
-    light: evenly below it, by ratio above it. 0 and 1 lie in the middle of the outermost cells, so
-    that the slope there is that of a cell. A table of the same size spaced as u^3 has four times
-    the error, and its slope has no limit at zero.
+    Colour is linear in the spectrum. So a table of spectra times the 33 x 3 matrix of a light and a
+    camera is a table of colours, and the 33 bands are never computed for each pixel. Nodes are at
+    equal steps of log(1 + f / spacing), where `spacing` is about the fraction that absorbs half of
+    the light. 0 and 1 are in the middle of the outermost cells, so that the gradient there is that
+    of a cell. A table of the same size spaced as u^3 has four times the error, and its gradient has
+    no limit at zero.
 
-    The table is kept unless one of the constants is a parameter; then it is made on every call, and
-    gradients reach the constant.
+    The table is stored unless one of the constants is a parameter. Then it is computed on every
+    call, and gradients reach the constant.
+
+    Args:
+        reflectance: Skin to tabulate.
+        nodes: Nodes in f_mel and in f_blood, at least 3.
+
+    Attributes:
+        reflectance: Skin that is tabulated.
+        nodes: Nodes in f_mel and in f_blood.
+        spacing: Spacing of f_mel and of f_blood.
+
+    Source:
+        Alotaibi & Smith 2017, section 4.4, precomputes such a table of colours.
+
+    Example:
+        >>> from skinnet.physics import SkinReflectance, load_spectrum_to_srgb
+        >>> lookup = SkinLookup(SkinReflectance())
+        >>> matrix = load_spectrum_to_srgb("D65", "mean").float()
+        >>> f_mel, f_blood = torch.full((1, 1, 1), 0.05), torch.full((1, 1, 1), 0.04)
+        >>> sampled = lookup.sample(lookup.colours(matrix[None]), f_mel, f_blood)[0, :, 0, 0]
+        >>> exact = lookup.reflectance(0.05, 0.04) @ matrix
+        >>> bool((sampled - exact).abs().max() < 5e-4)
+        True
     """
 
-    kept: Tensor
+    table: Tensor
 
-    def __init__(self, reflectance: SkinReflectance, nodes: tuple[int, int] = NODES):
+    def __init__(self, reflectance: SkinReflectance, nodes: tuple[int, int] = _NODES):
         super().__init__()
         self.reflectance = reflectance
         self.nodes = nodes
@@ -44,36 +67,50 @@ class SkinLookup(nn.Module):
 
     @torch.no_grad()
     def refresh(self) -> None:
-        """Make spacing and table again, after a constant was changed in place."""
+        """Compute spacing and table again, after a constant was changed in place."""
         skin = self.reflectance
         melanin = 0.5 / float((skin.d_epd * skin.mu_mel).max().clamp_min(1e-3))
         d_base = skin.d_epd if skin.d_base is None else skin.d_base
-        absorption = skin.mu_blood * (1 / BLOOD_SPACING + 2 * skin.blood_epd * d_base)
+        absorption = skin.mu_blood * (1 / _BLOOD_SPACING + 2 * skin.blood_epd * d_base)
         blood = 1 / float(absorption.mean().clamp_min(1e-3))
         self.spacing = (min(melanin, 1.0), min(blood, 1.0))
-        self.register_buffer("kept", self._tabulate(), persistent=False)
+        self.register_buffer("table", self._tabulate(), persistent=False)
 
     def spectra(self) -> Float[Tensor, "mel blood wavelength"]:
         """Reflectance at the nodes; the outermost, outside [0, 1], are extrapolated."""
         fixed = next(self.reflectance.parameters(), None) is None
-        return self.kept if fixed else self._tabulate()
+        return self.table if fixed else self._tabulate()
 
     def _tabulate(self) -> Float[Tensor, "mel blood wavelength"]:
         f_mel, f_blood = (self.fractions(axis) for axis in (0, 1))
         inner = self.reflectance.bands(f_mel[:, None], f_blood[None, :])
-        return _outer(_outer(inner).transpose(0, 1)).transpose(0, 1).contiguous()
+        rows = _extrapolate_ends(inner)
+        return _extrapolate_ends(rows.transpose(0, 1)).transpose(0, 1).contiguous()
+
+    def _axis(self, axis: int) -> PigmentAxis:
+        """Axis from 0 to 1, half a node after the first node of the table."""
+        return PigmentAxis(0.0, 1.0, self.nodes[axis] - 1, self.spacing[axis])
 
     def fractions(self, axis: int) -> Float[Tensor, "nodes"]:
-        """0, the inner nodes in f_mel (axis 0) or f_blood (axis 1), and 1."""
-        count, spacing = self.nodes[axis], self.spacing[axis]
-        step = (torch.arange(count, dtype=torch.float64) - 0.5).clamp(0, count - 2)
-        fraction = spacing * torch.expm1(step / (count - 2) * math.log1p(1 / spacing))
-        return fraction.to(self.reflectance.wavelengths)
+        """Return 0, the fractions of the inner nodes, and 1.
+
+        Args:
+            axis: 0 for f_mel, 1 for f_blood.
+        """
+        count = self.nodes[axis]
+        position = (np.arange(count) - 0.5).clip(0, count - 2)
+        return torch.from_numpy(self._axis(axis).fractions(position)).to(
+            self.reflectance.wavelengths
+        )
 
     def colours(
         self, matrix: Float[Tensor, "*batch wavelength 3"]
     ) -> Float[Tensor, "*batch 3 mel blood"]:
-        """Tables of linear RGB, one for each spectrum-to-RGB matrix."""
+        """Compute tables of linear RGB, one for each spectrum-to-RGB matrix.
+
+        Args:
+            matrix: Maps from reflectance to linear RGB, as `SpectralCamera.matrix`.
+        """
         spectra = self.spectra().to(matrix)
         # One product for the whole batch: a batched one would copy the spectra for each image.
         flat = matrix.mT.reshape(-1, matrix.shape[-2]) @ spectra.flatten(0, 1).mT
@@ -85,8 +122,17 @@ class SkinLookup(nn.Module):
         f_mel: Float[Tensor, "batch height width"],
         f_blood: Float[Tensor, "batch height width"],
     ) -> Float[Tensor, "batch 3 height width"]:
-        """Bilinear interpolation of the tables at the fractions of each pixel."""
-        grid = torch.stack([self._position(f_blood, 1), self._position(f_mel, 0)], -1)
+        """Interpolate tables of colours bilinearly at the fractions of each pixel.
+
+        Args:
+            colours: One table for each image, from `colours`.
+            f_mel: Melanosome volume fractions in [0, 1].
+            f_blood: Blood volume fractions in [0, 1].
+
+        Returns:
+            Linear RGB.
+        """
+        grid = torch.stack([self._grid_coordinate(f_blood, 1), self._grid_coordinate(f_mel, 0)], -1)
         return F.grid_sample(colours, grid, align_corners=True, padding_mode="border")
 
     def inverse(
@@ -96,21 +142,36 @@ class SkinLookup(nn.Module):
         f_mel: tuple[float, float] = F_MEL_RANGE,
         f_blood: tuple[float, float] = F_BLOOD_RANGE,
     ) -> SkinInverse:
-        """From linear RGB under a light and a camera back to the fractions."""
+        """Tabulate colours for inverse rendering under one light and camera.
+
+        Args:
+            matrix: Spectrum-to-RGB matrix of light, camera and colour transform.
+            nodes: Nodes in f_mel and in f_blood.
+            f_mel: Range of melanosome volume fractions.
+            f_blood: Range of blood volume fractions.
+
+        Raises:
+            InputError: As `SkinInverse`.
+        """
         return SkinInverse(self.reflectance, self.spacing, matrix, nodes, f_mel, f_blood)
 
-    def _position(self, fraction: Float[Tensor, "*shape"], axis: int) -> Float[Tensor, "*shape"]:
-        """Place of a fraction among the nodes as grid_sample counts it, -1 at the first."""
-        count, spacing = self.nodes[axis], self.spacing[axis]
-        scale = 2 * (count - 2) / (count - 1) / math.log1p(1 / spacing)
-        shift = 1 / (count - 1) - 1 - math.log(spacing) * scale
+    def _grid_coordinate(
+        self, fraction: Float[Tensor, "*shape"], axis: int
+    ) -> Float[Tensor, "*shape"]:
+        """Coordinate of grid_sample: -1 at the first node, 1 at the last."""
+        scale, shift = self._axis(axis).scale_and_shift
+        per_node = 2 / (self.nodes[axis] - 1)
         # In place: an allocation the size of a map costs as much as the arithmetic on it.
-        return torch.log(fraction + spacing).mul_(scale).add_(shift)
+        logarithm = torch.log(fraction + self.spacing[axis])
+        return logarithm.mul_(per_node * scale).add_(per_node * (shift + 0.5) - 1)
 
 
-def _outer(values: Float[Tensor, "nodes *rest"]) -> Float[Tensor, "nodes *rest"]:
-    """Values at 0, the inner nodes and 1 to values at all nodes: the first and last cell are the
-    lines through their inner node and their middle, so nothing is evaluated outside [0, 1]."""
+def _extrapolate_ends(values: Float[Tensor, "nodes *rest"]) -> Float[Tensor, "nodes *rest"]:
+    """Values at all nodes from those at 0, the inner nodes and 1.
+
+    The first and the last cell are lines through their inner node and their middle, so that
+    nothing is evaluated outside [0, 1].
+    """
     first, last = 2 * values[:1] - values[1:2], 2 * values[-1:] - values[-2:-1]
     return torch.cat([first, values[1:-1], last])
 

@@ -84,7 +84,7 @@ def test_gradients_are_right_to_the_edges(corner: tuple[float, float]) -> None:
 
 def test_table_is_kept_and_refreshed() -> None:
     lookup = SkinLookup(SkinReflectance(dtype=D))
-    assert lookup.spectra() is lookup.spectra() and "kept" not in lookup.state_dict()
+    assert lookup.spectra() is lookup.spectra() and "table" not in lookup.state_dict()
     lookup.reflectance.d_epd.fill_(0.05)
     lookup.refresh()
     expected = SkinLookup(SkinReflectance(thick(), dtype=D)).spectra()
