@@ -1,4 +1,4 @@
-"""How the triangles of a mesh hang together: edges, boundaries, components, doubled vertices."""
+"""Topology of a mesh: edges, boundaries, components, repeated vertices."""
 
 import numpy as np
 from jaxtyping import Bool, Float, Int
@@ -7,35 +7,35 @@ from scipy.sparse.csgraph import connected_components
 
 from skinnet.errors import InputError
 
-Triangles = Int[np.ndarray, "triangles 3"]
+_Triangles = Int[np.ndarray, "triangles 3"]
 
 
-def half_edges(triangles: Triangles) -> Int[np.ndarray, "halves 2"]:
-    """The directed edges of every triangle [3 T, 2]: row 3 i + k starts at corner k of i."""
+def half_edges(triangles: _Triangles) -> Int[np.ndarray, "halves 2"]:
+    """Directed edges of every triangle [3 T, 2]; row 3 i + k starts at corner k of triangle i."""
     return np.stack([triangles, np.roll(triangles, -1, 1)], -1).reshape(-1, 2)
 
 
 def edge_keys(
     edges: Int[np.ndarray, "edges 2"], vertex_count: int, directed: bool = False
 ) -> Int[np.ndarray, "edges"]:
-    """One number for each edge, the same for both directions unless `directed`."""
+    """A number that identifies each edge, the same for both directions unless `directed`."""
     ends = edges if directed else np.sort(edges, 1)
     return np.asarray(ends[:, 0].astype(np.int64) * vertex_count + ends[:, 1])
 
 
-def boundary(triangles: Triangles) -> Bool[np.ndarray, "triangles 3"]:
-    """Whether edge k of each triangle, from corner k to corner k + 1, belongs to it alone."""
+def boundary(triangles: _Triangles) -> Bool[np.ndarray, "triangles 3"]:
+    """Whether edge k of each triangle, from corner k to k + 1, belongs to no other triangle."""
     keys = edge_keys(half_edges(triangles), int(triangles.max(initial=-1)) + 1)
     _, place, count = np.unique(keys, return_inverse=True, return_counts=True)
     return np.asarray(count[place] == 1).reshape(-1, 3)
 
 
-def boundary_loops(triangles: Triangles) -> list[Int[np.ndarray, "loop"]]:
-    """Vertices of each closed boundary, in the direction of the triangles' edges.
+def boundary_loops(triangles: _Triangles) -> list[Int[np.ndarray, "loop"]]:
+    """Vertices of each boundary loop, in the direction of the triangles' edges.
 
-    Raises `InputError` where triangles overlap or meet in a way that no surface does: an edge of
-    three triangles or of two that are turned against each other, a vertex where two boundaries
-    touch.
+    Raises:
+        InputError: If the mesh is not an oriented manifold: an edge has three triangles or two of
+            opposite orientation, or two boundaries touch in a vertex.
     """
     edges = half_edges(triangles)
     _check_manifold(edges)
@@ -44,7 +44,7 @@ def boundary_loops(triangles: Triangles) -> list[Int[np.ndarray, "loop"]]:
         touching = np.flatnonzero(np.bincount(start) > 1)
         raise InputError(
             f"Two boundaries of the mesh touch in vertex {touching[0]}; remove the triangles that "
-            "hang on by a single vertex."
+            "are connected by a single vertex."
         )
     following = dict(zip(start.tolist(), end.tolist(), strict=True))
     loops = []
@@ -58,15 +58,15 @@ def boundary_loops(triangles: Triangles) -> list[Int[np.ndarray, "loop"]]:
     return loops
 
 
-def label_components(triangles: Triangles, vertex_count: int) -> Int[np.ndarray, "vertices"]:
-    """A number for each vertex, the same for those that triangles connect."""
+def label_components(triangles: _Triangles, vertex_count: int) -> Int[np.ndarray, "vertices"]:
+    """Number each vertex by its component; triangles connect their vertices."""
     start, end = half_edges(triangles).T
     links = coo_array((np.ones(len(start), bool), (start, end)), (vertex_count, vertex_count))
     return np.asarray(connected_components(links, directed=False)[1])
 
 
 def weld(vertices: Float[np.ndarray, "vertices 3"]) -> Int[np.ndarray, "vertices"]:
-    """For each vertex the first one at exactly the same position, itself if there is none."""
+    """Find the first vertex at exactly the position of each, which may be itself."""
     order = np.lexsort(vertices.T)
     sorted_ = vertices[order]
     new = np.r_[True, (sorted_[1:] != sorted_[:-1]).any(1)][: len(vertices)]

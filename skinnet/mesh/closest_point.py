@@ -1,4 +1,4 @@
-"""The closest point of a surface, exactly, for many queries at once."""
+"""Closest points of a triangle mesh, exact, for many queries at once."""
 
 from typing import NamedTuple
 
@@ -10,11 +10,17 @@ LEAF = 4
 """Triangles in a box of the finest level."""
 
 CHUNK = 100_000
-"""Queries that go through the tree together; it bounds the memory."""
+"""Queries that descend the tree together; this bounds the memory."""
 
 
 class ClosestPoints(NamedTuple):
-    """Where the surface is closest: `triangle` -1 and `distance` inf if beyond the limit."""
+    """The closest point of a mesh to each query.
+
+    Attributes:
+        distance: In the mesh's unit; inf where nothing lies within the limit.
+        triangle: Index of the triangle that holds the point, -1 where nothing does.
+        barycentric: Weights of that triangle's three corners, at least 0 and of sum 1.
+    """
 
     distance: Float[np.ndarray, "queries"]
     triangle: Int[np.ndarray, "queries"]
@@ -22,11 +28,26 @@ class ClosestPoints(NamedTuple):
 
 
 class TriangleTree:
-    """A tree of boxes over triangles of any size.
+    """A tree of bounding boxes over triangles of any size, for exact closest points.
 
-    Every level halves the triangles of a box along its longest side. All queries go down
-    together, each into those boxes that are nearer than the best it has, at first its nearest
-    vertex.
+    Each level halves the triangles of a box along its longest side. All queries descend together,
+    each into the boxes nearer than its current best, which is at first its nearest vertex.
+
+    trimesh's `proximity.closest_point` needs rtree besides. Its `triangles.closest_point` of the 8
+    triangles with the nearest centroids is 3 to 6 times as fast, but not exact: on the scan of
+    James it is wrong by up to 0.2 % of the scan's size (`benchmarks.texture` prints both times, and
+    `closest_centroid_error`).
+
+    Args:
+        vertices: Positions in any unit.
+        triangles: Vertex indices; triangles without an area count as the edge or point that they
+            are.
+
+    Example:
+        >>> import numpy as np
+        >>> tree = TriangleTree(np.eye(3), np.array([[0, 1, 2]]))
+        >>> tree.query(np.array([[0.0, 0.0, 0.0], [3.0, 0.0, 0.0]])).distance.round(3)
+        array([0.577, 2.   ])
     """
 
     def __init__(
@@ -36,15 +57,23 @@ class TriangleTree:
     ):
         corners = vertices[triangles].astype(np.float64)
         self.nearest_vertex = cKDTree(vertices[np.unique(triangles)])
-        self.order, self.depth = _order(corners.mean(1))
+        self.order, self.depth = _order_triangles(corners.mean(1))
         corners = corners[self.order]
-        self.low, self.high = _boxes(corners, self.depth)
+        self.low, self.high = _bound_boxes(corners, self.depth)
         self.start = corners[:, 0]
         self.sides = corners[:, 1:] - corners[:, :1]
         self.gram = np.einsum("tix,tjx->tij", self.sides, self.sides)
 
     def query(self, points: Float[np.ndarray, "queries 3"], limit: float = np.inf) -> ClosestPoints:
-        """The closest point to each of `points` within `limit`."""
+        """Find the closest point of the mesh to each of `points`.
+
+        Args:
+            points: Queries, in the mesh's unit.
+            limit: Largest distance at which a point counts.
+
+        Returns:
+            Distances, triangles and barycentric coordinates.
+        """
         parts = [
             self._query(points[i : i + CHUNK], limit) for i in range(0, max(len(points), 1), CHUNK)
         ]
@@ -63,20 +92,20 @@ class TriangleTree:
             gap = np.maximum(np.maximum(low - place, place - high), 0)
             near = np.einsum("px,px->p", gap, gap) <= reach[query]
             query, box = query[near], box[near]
-        return self._best(points, np.repeat(query, LEAF), _members(box), limit)
+        return self._choose(points, np.repeat(query, LEAF), _expand_boxes(box), limit)
 
-    def _best(
+    def _choose(
         self,
         points: Float[np.ndarray, "queries 3"],
         query: Int[np.ndarray, "pairs"],
         triangle: Int[np.ndarray, "pairs"],
         limit: float,
     ) -> ClosestPoints:
-        """The nearest of the pairs of each query, which come in the order of the queries."""
+        """Choose the nearest triangle of each query; pairs are sorted by query."""
         away = points[query] - self.start[triangle]
         along = np.einsum("pix,px->pi", self.sides[triangle], away)
-        second, third, less = _nearest_in_triangle(self.gram[triangle], along)
-        squared = np.einsum("px,px->p", away, away) - less
+        second, third, reduction = _nearest_in_triangle(self.gram[triangle], along)
+        squared = np.einsum("px,px->p", away, away) - reduction
         found, first = np.unique(query, return_index=True)
         best = np.full(len(points), np.inf)
         if len(found):
@@ -84,11 +113,11 @@ class TriangleTree:
         winners = np.flatnonzero(squared == best[query])
         found, first = np.unique(query[winners], return_index=True)
         winners = winners[first]
-        return self._result(
+        return self._interpolate(
             points, found, triangle[winners], second[winners], third[winners], limit
         )
 
-    def _result(
+    def _interpolate(
         self,
         points: Float[np.ndarray, "queries 3"],
         found: Int[np.ndarray, "found"],
@@ -112,10 +141,12 @@ class TriangleTree:
         return ClosestPoints(distance, number, barycentric)
 
 
-def _order(middles: Float[np.ndarray, "triangles 3"]) -> tuple[Int[np.ndarray, "slots"], int]:
-    """Triangles so that every box of every level holds a run of them, and the number of levels.
+def _order_triangles(
+    middles: Float[np.ndarray, "triangles 3"],
+) -> tuple[Int[np.ndarray, "slots"], int]:
+    """Sort triangles so that every box of every level holds a run; also the number of levels.
 
-    The last boxes are filled with a triangle repeated.
+    The last boxes are filled by repeating a triangle.
     """
     depth = int(np.ceil(np.log2(max(len(middles) / LEAF, 1))))
     slots = LEAF << depth
@@ -129,7 +160,7 @@ def _order(middles: Float[np.ndarray, "triangles 3"]) -> tuple[Int[np.ndarray, "
     return order, depth
 
 
-def _boxes(
+def _bound_boxes(
     corners: Float[np.ndarray, "slots 3 3"], depth: int
 ) -> tuple[list[Float[np.ndarray, "_ 3"]], list[Float[np.ndarray, "_ 3"]]]:
     """Lowest and highest corner of the 2, 4, 8, ... boxes of each level."""
@@ -141,17 +172,18 @@ def _boxes(
     return low[::-1], high[::-1]
 
 
-def _members(box: Int[np.ndarray, "boxes"]) -> Int[np.ndarray, "members"]:
+def _expand_boxes(box: Int[np.ndarray, "boxes"]) -> Int[np.ndarray, "members"]:
     return (LEAF * box[:, None] + np.arange(LEAF)).ravel()
 
 
 def _nearest_in_triangle(
     gram: Float[np.ndarray, "pairs 2 2"], along: Float[np.ndarray, "pairs 2"]
 ) -> tuple[Float[np.ndarray, "pairs"], Float[np.ndarray, "pairs"], Float[np.ndarray, "pairs"]]:
-    """Coordinates (s, t) of the point of a + s ab + t ac nearest to p, 0 <= s, t, s + t <= 1.
+    """Find (s, t) such that a + s ab + t ac is closest to p, with 0 <= s, t and s + t <= 1.
 
-    From the products of the sides with each other and with p - a; third is |p - a|^2 less the
-    squared distance. Inside if the plane's nearest point is, else the best on the three edges.
+    `gram` has the scalar products of the sides ab and ac, `along` those of the sides with p - a.
+    The point is the plane's closest one if that lies inside, else the best on the three edges. The
+    third result is |p - a|^2 minus the squared distance.
     """
     bb, bc, cc = gram[:, 0, 0], gram[:, 0, 1], gram[:, 1, 1]
     pb, pc = along.T
@@ -165,16 +197,16 @@ def _nearest_in_triangle(
     across = ((pc - pb + bb - bc) / np.maximum(bb + cc - 2 * bc, tiny)).clip(0, 1)
     inside = (determinant > 1e-14 * bb * cc) & (s >= 0) & (t >= 0) & (s + t <= 1)
     best_s, best_t = np.where(inside, s, on_b), np.where(inside, t, zero)
-    best = _less(best_s, best_t, bb, bc, cc, pb, pc)
+    best = _reduction(best_s, best_t, bb, bc, cc, pb, pc)
     for s, t in ((zero, on_c), (1 - across, across)):
-        less = _less(s, t, bb, bc, cc, pb, pc)
-        better = ~inside & (less > best)
+        reduction = _reduction(s, t, bb, bc, cc, pb, pc)
+        better = ~inside & (reduction > best)
         best_s, best_t = np.where(better, s, best_s), np.where(better, t, best_t)
-        best = np.where(better, less, best)
+        best = np.where(better, reduction, best)
     return best_s, best_t, best
 
 
-def _less(
+def _reduction(
     s: Float[np.ndarray, "pairs"],
     t: Float[np.ndarray, "pairs"],
     bb: Float[np.ndarray, "pairs"],
@@ -183,5 +215,5 @@ def _less(
     pb: Float[np.ndarray, "pairs"],
     pc: Float[np.ndarray, "pairs"],
 ) -> Float[np.ndarray, "pairs"]:
-    """What the squared distance to the point (s, t) lacks to that to a."""
+    """Squared distance from p to a, minus that to the point (s, t)."""
     return np.asarray(2 * (s * pb + t * pc) - s * s * bb - 2 * s * t * bc - t * t * cc)

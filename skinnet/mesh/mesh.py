@@ -8,12 +8,23 @@ from jaxtyping import Float, Int, UInt8
 
 @dataclass(frozen=True)
 class Mesh:
-    """A surface in three dimensions with, where known, its texture.
+    """A triangle mesh with, where known, its texture.
 
-    `vertices` [V, 3] in any unit, `triangles` [T, 3] into them, counter-clockwise from outside.
-    `uv` [U, 2] in [0, 1] with the origin at the lower left of the picture, and `uv_triangles`
-    [T, 3] into it, so that a vertex on a seam has one position and several texture coordinates.
-    `texture` is uint8 sRGB [H, W, 3], its first row the top. `name` is for messages.
+    A vertex on a seam has one position and several texture coordinates, so triangles have indices
+    of their own into these.
+
+    Args:
+        vertices: Positions in any unit.
+        triangles: Vertex indices, counter-clockwise seen from outside.
+        uv: Texture coordinates in [0, 1] with the origin at the lower left of the picture.
+        uv_triangles: Indices into `uv` of each triangle's corners.
+        texture: sRGB picture, row 0 at the top.
+        name: What error messages call the mesh.
+
+    Example:
+        >>> import numpy as np
+        >>> Mesh(np.eye(3), np.array([[0, 1, 2]]), name="triangle").vertices.shape
+        (3, 3)
     """
 
     vertices: Float[np.ndarray, "vertices 3"]

@@ -1,4 +1,4 @@
-"""What may be wrong with a scan: repaired where that is safe, said where it is not."""
+"""Repair of meshes: what is safe is repaired with a note, anything else is refused."""
 
 from dataclasses import replace
 from typing import NamedTuple
@@ -19,65 +19,102 @@ from skinnet.mesh._topology import edge_keys, half_edges
 from skinnet.mesh.mesh import Mesh
 
 DAMAGED = 0.1
-"""Largest share of vertices that are not finite, or of faces without an area, that is left out."""
+"""Largest share of vertices that are not finite, or of faces without an area, to be removed."""
 
 KEPT = 0.1
-"""Components with at least this share of the area are kept beside the largest."""
+"""Components with at least this share of the area are kept."""
 
 PLACEHOLDER = 8
-"""A texture with a side of fewer texels than this is none."""
+"""A texture with fewer texels than this on a side is a placeholder."""
 
-JUTTING = 0.01
+OVERHANG = 0.01
 """Texture coordinates may leave their tile by this much."""
 
 UNITS = {"metres": 1000.0, "centimetres": 10.0, "millimetres": 1.0, "micrometres": 0.001}
 FACE = (100.0, 600.0)
-"""Longest side of the box about a face, a head, or a head with shoulders, in millimetres."""
+"""Longest side of the bounding box of a face, or of a head with shoulders, in millimetres."""
 
-Choice = Bool[np.ndarray, "triangles"]
+_FaceMask = Bool[np.ndarray, "triangles"]
 
 
 class RepairedMesh(NamedTuple):
-    """A mesh that can be worked with, and a sentence for each thing that was changed."""
+    """A repaired mesh, and a sentence for each change."""
 
     mesh: Mesh
     notes: list[str]
 
 
 class LengthUnit(NamedTuple):
-    """Millimetres in a mesh's unit, and a sentence about it."""
+    """The number of millimetres in a mesh's unit, and a sentence about it."""
 
     millimetres: float
     note: str
 
 
 def repair_mesh(mesh: Mesh, need_texture: bool = False) -> RepairedMesh:
-    """A surface turned outside, with at most two faces an edge, in one or few components.
+    """Repair a mesh into an oriented manifold of one or few components.
 
-    Left out, each with a note: vertices that are not finite, faces without an area or listed twice,
-    the smallest faces at edges with more than two, and components below `KEPT` of the area. Faces
-    are turned to agree with each other and to look away from the middle. With `need_texture`,
-    texture coordinates in other tiles are wrapped.
+    Removed are vertices that are not finite, faces without an area, repeated faces, the smallest
+    faces at edges with more than two, and components below `KEPT` of the area. Faces are flipped so
+    that neighbours agree and the outside looks away from the middle. With `need_texture`, texture
+    coordinates outside [0, 1] are wrapped.
 
-    Raises `InputError`, which names the mesh and the fault, for a mesh without faces, with faces
-    out of range, with more than `DAMAGED` broken, in pieces, or, with `need_texture`, without
-    texture coordinates or a coloured texture.
+    Args:
+        mesh: The mesh, with its name for messages.
+        need_texture: Whether the mesh must have texture coordinates and a coloured texture.
+
+    Returns:
+        The repaired mesh and a note for each change.
+
+    Raises:
+        InputError: For a mesh without faces, with faces out of range, with more than `DAMAGED` of
+            its vertices or faces broken, without a component of half of the area, or without the
+            texture it needs.
+
+    Example:
+        >>> import numpy as np
+        >>> vertices = np.array([[0.0, 0, 0], [1, 0, 0], [0, 1, 0], [1, 1, -0.5]])
+        >>> triangles = np.array([[0, 1, 2], [1, 3, 2], [2, 1, 3]])
+        >>> repaired, notes = repair_mesh(Mesh(vertices, triangles, name="scan.obj"))
+        >>> notes
+        ['scan.obj: 1 repeated faces were removed.']
     """
     _check_faces(mesh)
     notes: list[str] = []
-    steps = [_finite, _solid, _unrepeated, _manifold, _largest, _agreeing, _outward]
-    for repair in [*steps, _textured] if need_texture else steps:
+    steps = [
+        _remove_infinite_vertices,
+        _remove_flat_faces,
+        _remove_repeated_faces,
+        _remove_non_manifold_faces,
+        _remove_small_components,
+        _make_consistent,
+        _orient_outward,
+    ]
+    for repair in [*steps, _check_texture] if need_texture else steps:
         mesh, note = repair(mesh)
         notes += note
-    return RepairedMesh(_compact(mesh), notes)
+    return RepairedMesh(_remove_unused(mesh), notes)
 
 
 def guess_length_unit(
     vertices: Float[np.ndarray, "vertices 3"], name: str = "The mesh"
 ) -> LengthUnit:
-    """The unit in which a mesh is as large as a face or a head, `FACE`.
+    """Guess the unit of a mesh: the one of `UNITS` that gives it the size of a face or head, `FACE`.
 
-    Raises `InputError` if it is in none of `UNITS`.
+    Args:
+        vertices: Positions of a face or head.
+        name: What messages call the mesh.
+
+    Returns:
+        The unit, and a sentence about it.
+
+    Raises:
+        InputError: If the mesh has the size of a face in none of `UNITS`.
+
+    Example:
+        >>> import numpy as np
+        >>> guess_length_unit(np.array([[0.0, 0, 0], [0, 0.2, 0]]), "scan.obj")
+        LengthUnit(millimetres=1000.0, note='scan.obj is taken to be in metres: it is 200 mm long.')
     """
     size = float(np.ptp(vertices, axis=0).max())
     for unit, millimetres in UNITS.items():
@@ -110,7 +147,7 @@ def _check_range(mesh: Mesh, triangles: Int[np.ndarray, "t 3"], count: int, what
         )
 
 
-def _finite(mesh: Mesh) -> RepairedMesh:
+def _remove_infinite_vertices(mesh: Mesh) -> RepairedMesh:
     broken = ~np.isfinite(mesh.vertices).all(1)
     count = int(broken[np.unique(mesh.triangles)].sum())
     if count > DAMAGED * len(mesh.vertices):
@@ -118,11 +155,11 @@ def _finite(mesh: Mesh) -> RepairedMesh:
             f"{mesh.name} is damaged: {count:,} of its {len(mesh.vertices):,} vertices are NaN or "
             "infinite; export it again."
         )
-    note = f"{count:,} vertices that are NaN or infinite were left out with their faces."
-    return _without(mesh, broken[mesh.triangles].any(1), note)
+    note = f"{count:,} vertices that are NaN or infinite were removed with their faces."
+    return _remove_faces(mesh, broken[mesh.triangles].any(1), note)
 
 
-def _solid(mesh: Mesh) -> RepairedMesh:
+def _remove_flat_faces(mesh: Mesh) -> RepairedMesh:
     area = areas(mesh.vertices, mesh.triangles)
     flat = area <= 1e-12 * area.max()
     if flat.mean() > DAMAGED:
@@ -130,18 +167,18 @@ def _solid(mesh: Mesh) -> RepairedMesh:
             f"{mesh.name} is damaged: {int(flat.sum()):,} of its {len(flat):,} faces have no area; "
             "export it again."
         )
-    return _without(mesh, flat, f"{int(flat.sum()):,} faces without an area were left out.")
+    return _remove_faces(mesh, flat, f"{int(flat.sum()):,} faces without an area were removed.")
 
 
-def _unrepeated(mesh: Mesh) -> RepairedMesh:
+def _remove_repeated_faces(mesh: Mesh) -> RepairedMesh:
     _, first = np.unique(np.sort(mesh.triangles, 1), axis=0, return_index=True)
-    again = np.ones(len(mesh.triangles), bool)
-    again[first] = False
-    return _without(mesh, again, f"{int(again.sum()):,} faces were listed twice.")
+    repeated = np.ones(len(mesh.triangles), bool)
+    repeated[first] = False
+    return _remove_faces(mesh, repeated, f"{int(repeated.sum()):,} repeated faces were removed.")
 
 
-def _manifold(mesh: Mesh) -> RepairedMesh:
-    """The two largest faces stay at every edge; what sticks to a surface is small."""
+def _remove_non_manifold_faces(mesh: Mesh) -> RepairedMesh:
+    """Keep the two largest faces at every edge; what sticks to a surface is small."""
     area = areas(mesh.vertices, mesh.triangles)
     keys = edge_keys(half_edges(mesh.triangles), len(mesh.vertices))
     order = np.lexsort([-np.repeat(area, 3), keys])
@@ -149,15 +186,15 @@ def _manifold(mesh: Mesh) -> RepairedMesh:
     count = np.diff(starts, append=len(keys))
     surplus = np.zeros(len(keys), bool)
     surplus[order] = np.arange(len(keys)) - np.repeat(starts, count) >= 2
-    dropped = np.asarray(surplus.reshape(-1, 3).any(1))
+    removed = np.asarray(surplus.reshape(-1, 3).any(1))
     note = (
         f"{int((count > 2).sum()):,} edges had more than two faces (not manifold); the smallest "
-        f"{int(dropped.sum()):,} faces there were left out."
+        f"{int(removed.sum()):,} faces there were removed."
     )
-    return _without(mesh, dropped, note)
+    return _remove_faces(mesh, removed, note)
 
 
-def _largest(mesh: Mesh) -> RepairedMesh:
+def _remove_small_components(mesh: Mesh) -> RepairedMesh:
     label = label_face_components(mesh.triangles)
     area = np.bincount(label, areas(mesh.vertices, mesh.triangles))
     share = area / area.sum()
@@ -166,26 +203,26 @@ def _largest(mesh: Mesh) -> RepairedMesh:
             f"{mesh.name} is in {len(share):,} pieces, the largest with {share.max():.0%} of the "
             "area; weld its vertices, or cut the face out."
         )
-    dropped = share < KEPT
+    removed = share < KEPT
     note = (
-        f"{int(dropped.sum()):,} of {len(share):,} components were left out, "
-        f"{share[dropped].sum():.2%} of the area."
+        f"{int(removed.sum()):,} of {len(share):,} components were removed, "
+        f"{share[removed].sum():.2%} of the area."
     )
-    return _without(mesh, dropped[label], note)
+    return _remove_faces(mesh, removed[label], note)
 
 
-def _agreeing(mesh: Mesh) -> RepairedMesh:
-    turn = find_inconsistent_faces(mesh.vertices, mesh.triangles)
-    note = f"{int(turn.sum()):,} faces were turned to agree with their neighbours."
-    return _turned(mesh, turn, note)
+def _make_consistent(mesh: Mesh) -> RepairedMesh:
+    flipped = find_inconsistent_faces(mesh.vertices, mesh.triangles)
+    note = f"{int(flipped.sum()):,} faces were flipped to agree with their neighbours."
+    return _flip_faces(mesh, flipped, note)
 
 
-def _outward(mesh: Mesh) -> RepairedMesh:
-    turn = np.full(len(mesh.triangles), is_inside_out(mesh.vertices, mesh.triangles))
-    return _turned(mesh, turn, "The faces looked inside, and all were turned.")
+def _orient_outward(mesh: Mesh) -> RepairedMesh:
+    flipped = np.full(len(mesh.triangles), is_inside_out(mesh.vertices, mesh.triangles))
+    return _flip_faces(mesh, flipped, "The faces pointed inwards, and all were flipped.")
 
 
-def _textured(mesh: Mesh) -> RepairedMesh:
+def _check_texture(mesh: Mesh) -> RepairedMesh:
     uv, triangles, texture = mesh.uv, mesh.uv_triangles, mesh.texture
     if uv is None or triangles is None:
         fault = "no texture coordinates (UV); export it with them, as OBJ or glTF"
@@ -193,20 +230,20 @@ def _textured(mesh: Mesh) -> RepairedMesh:
         fault = "texture coordinates that are NaN or infinite; export it again"
     elif texture is None:
         fault = (
-            "no texture: its material names no picture that is there, and there is not one beside "
-            "it; give the picture's path"
+            "no texture: its material names no picture that exists, and its folder has none, or "
+            "several; give the picture's path"
         )
     elif min(texture.shape[:2]) < PLACEHOLDER:
         size = f"{texture.shape[1]} x {texture.shape[0]}"
         fault = f"a texture of {size} pixels, a placeholder; give the picture's path"
     elif (texture == texture[..., :1]).all():
-        fault = "a grey texture, and melanin and hemoglobin are read from colour; give another"
+        fault = "a grey texture; melanin and hemoglobin are read from colour, give another texture"
     else:
-        return _tiled(mesh, uv, triangles)
+        return _wrap_texture(mesh, uv, triangles)
     raise InputError(f"{mesh.name} has {fault}.")
 
 
-def _tiled(
+def _wrap_texture(
     mesh: Mesh, uv: Float[np.ndarray, "points 2"], triangles: Int[np.ndarray, "triangles 3"]
 ) -> RepairedMesh:
     corners = uv[triangles]
@@ -214,39 +251,39 @@ def _tiled(
     if not outside:
         return RepairedMesh(mesh, [])
     placed = corners - np.floor(corners.mean(1, keepdims=True))
-    jutting = int((np.abs(placed - 0.5) > 0.5 + JUTTING).any((1, 2)).sum())
-    if jutting:
+    overhanging = int((np.abs(placed - 0.5) > 0.5 + OVERHANG).any((1, 2)).sum())
+    if overhanging:
         raise InputError(
-            f"{mesh.name} has {jutting:,} faces across the border of its texture (texture "
+            f"{mesh.name} has {overhanging:,} faces across the border of its texture (texture "
             f"coordinates {uv.min():.3g} to {uv.max():.3g}); unwrap it onto [0, 1]."
         )
     wrapped, moved = wrap_coordinates(uv, triangles)
-    note = f"The texture was repeated for {outside:,} faces outside of it."
+    note = f"{outside:,} faces outside the texture were wrapped onto it."
     return RepairedMesh(replace(mesh, uv=wrapped, uv_triangles=moved), [f"{mesh.name}: {note}"])
 
 
-def _without(mesh: Mesh, dropped: Choice, note: str) -> RepairedMesh:
-    if not dropped.any():
+def _remove_faces(mesh: Mesh, removed: _FaceMask, note: str) -> RepairedMesh:
+    if not removed.any():
         return RepairedMesh(mesh, [])
-    if dropped.all():
-        raise InputError(f"{mesh.name} has no sound face; export it again.")
-    uv_triangles = None if mesh.uv_triangles is None else mesh.uv_triangles[~dropped]
-    kept = replace(mesh, triangles=mesh.triangles[~dropped], uv_triangles=uv_triangles)
+    if removed.all():
+        raise InputError(f"{mesh.name} has only broken faces; export it again.")
+    uv_triangles = None if mesh.uv_triangles is None else mesh.uv_triangles[~removed]
+    kept = replace(mesh, triangles=mesh.triangles[~removed], uv_triangles=uv_triangles)
     return RepairedMesh(kept, [f"{mesh.name}: {note}"])
 
 
-def _turned(mesh: Mesh, turn: Choice, note: str) -> RepairedMesh:
-    if not turn.any():
+def _flip_faces(mesh: Mesh, flipped: _FaceMask, note: str) -> RepairedMesh:
+    if not flipped.any():
         return RepairedMesh(mesh, [])
-    uv_triangles = None if mesh.uv_triangles is None else flip_triangles(mesh.uv_triangles, turn)
-    triangles = flip_triangles(mesh.triangles, turn)
+    uv_triangles = None if mesh.uv_triangles is None else flip_triangles(mesh.uv_triangles, flipped)
+    triangles = flip_triangles(mesh.triangles, flipped)
     return RepairedMesh(
         replace(mesh, triangles=triangles, uv_triangles=uv_triangles), [f"{mesh.name}: {note}"]
     )
 
 
-def _compact(mesh: Mesh) -> Mesh:
-    """Without vertices and texture coordinates that no face has."""
+def _remove_unused(mesh: Mesh) -> Mesh:
+    """Remove vertices and texture coordinates that no face uses."""
     used, place = np.unique(mesh.triangles, return_inverse=True)
     mesh = replace(mesh, vertices=mesh.vertices[used], triangles=place.reshape(-1, 3))
     if mesh.uv is None or mesh.uv_triangles is None:

@@ -1,42 +1,36 @@
-"""Values of a picture between its pixels."""
+"""Sampling of pictures between their pixels."""
 
 import numpy as np
 from jaxtyping import Float, Shaped
+from scipy.ndimage import map_coordinates
 
 
 def sample_bilinear(
     picture: Shaped[np.ndarray, "height width channels"], uv: Float[np.ndarray, "points 2"]
 ) -> Float[np.ndarray, "points channels"]:
-    """Values at texture coordinates, float32, in the picture's own scale.
+    """Sample a picture at texture coordinates by bilinear interpolation.
 
-    The origin of `uv` is the lower left of the picture, whose row 0 is the top; pixel (r, c) has
-    its centre at ((c + .5) / W, 1 - (r + .5) / H). Beyond the outermost centres their values go on.
+    Beyond the centres of the outermost pixels their values continue.
+
+    Args:
+        picture: Any number of channels, row 0 at the top.
+        uv: Texture coordinates with the origin at the lower left; pixel (r, c) of a picture of
+            H x W has its centre at ((c + .5) / W, 1 - (r + .5) / H).
+
+    Returns:
+        Values in the picture's own scale, float32.
+
+    Example:
+        >>> import numpy as np
+        >>> picture = np.array([[[0], [10]]], np.uint8)
+        >>> sample_bilinear(picture, np.array([[0.25, 0.5], [0.5, 0.5], [1.0, 0.5]])).ravel()
+        array([ 0.,  5., 10.], dtype=float32)
     """
     height, width, channels = picture.shape
-    left, along = _cell(uv[:, 0] * width - 0.5, width)
-    top, down = _cell((1 - uv[:, 1]) * height - 0.5, height)
-    flat = picture.reshape(-1, channels)
-    here = top * width + left
-    # A picture of one row or column has no next one.
-    right, below = int(width > 1), width * int(height > 1)
-    upper = _mix(flat, here, here + right, along)
-    lower = _mix(flat, here + below, here + below + right, along)
-    return np.asarray(upper + (lower - upper) * down)
-
-
-def _cell(
-    place: Float[np.ndarray, "points"], count: int
-) -> tuple[Shaped[np.ndarray, "points"], Float[np.ndarray, "points 1"]]:
-    place = place.clip(0, count - 1)
-    first = place.astype(np.int64).clip(0, max(count - 2, 0))
-    return first, (place - first).astype(np.float32)[:, None]
-
-
-def _mix(
-    flat: Shaped[np.ndarray, "pixels channels"],
-    first: Shaped[np.ndarray, "points"],
-    second: Shaped[np.ndarray, "points"],
-    share: Float[np.ndarray, "points 1"],
-) -> Float[np.ndarray, "points channels"]:
-    start = flat[first].astype(np.float32)
-    return np.asarray(start + (flat[second].astype(np.float32) - start) * share)
+    place = np.stack([(1 - uv[:, 1]) * height - 0.5, uv[:, 0] * width - 0.5])
+    sampled = np.empty((len(uv), channels), np.float32)
+    for channel in range(channels):
+        sampled[:, channel] = map_coordinates(
+            picture[..., channel], place, np.float32, order=1, mode="nearest"
+        )
+    return sampled

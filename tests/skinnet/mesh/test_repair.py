@@ -62,7 +62,7 @@ def test_faces_out_of_range_are_refused() -> None:
 def test_a_few_vertices_that_are_nan_are_left_out_with_their_faces() -> None:
     mesh = with_vertices(dome(), v0=np.nan, v3=np.inf)
     checked, notes = repair_mesh(mesh)
-    assert notes == ["dome: 2 vertices that are NaN or infinite were left out with their faces."]
+    assert notes == ["dome: 2 vertices that are NaN or infinite were removed with their faces."]
     assert np.isfinite(checked.vertices).all() and len(checked.vertices) == 61
     assert len(checked.uv_triangles) == len(checked.triangles)
 
@@ -80,8 +80,8 @@ def test_faces_without_area_and_repeated_ones_are_left_out() -> None:
     assert sorted(extra[2]) in np.sort(mesh.triangles, 1).tolist()
     checked, notes = repair_mesh(Mesh(mesh.vertices, triangles, name="dome"))
     assert notes == [
-        "dome: 2 faces without an area were left out.",
-        "dome: 1 faces were listed twice.",
+        "dome: 2 faces without an area were removed.",
+        "dome: 1 repeated faces were removed.",
     ]
     assert np.array_equal(checked.triangles, mesh.triangles)
     flat = np.concatenate([mesh.triangles, np.zeros((20, 3), int)])
@@ -99,7 +99,7 @@ def test_a_fin_at_an_edge_is_left_out() -> None:
     checked, notes = repair_mesh(made)
     assert notes == [
         "dome: 1 edges had more than two faces (not manifold); the smallest 1 faces there were "
-        "left out."
+        "removed."
     ]
     assert np.array_equal(checked.vertices, mesh.vertices)
 
@@ -107,7 +107,7 @@ def test_a_fin_at_an_edge_is_left_out() -> None:
 def test_small_components_are_left_out_and_large_ones_stay() -> None:
     crumb, other = moved(dome(), 500.0, 0.1), moved(dome(), 900.0, 0.5)
     checked, notes = repair_mesh(joined(dome(), crumb, other))
-    assert notes == ["dome: 1 of 3 components were left out, 0.79% of the area."]
+    assert notes == ["dome: 1 of 3 components were removed, 0.79% of the area."]
     assert len(checked.vertices) == 126
 
 
@@ -165,7 +165,7 @@ def test_a_texture_is_needed_only_where_it_is_said_to_be() -> None:
 def test_coordinates_in_other_tiles_are_wrapped() -> None:
     mesh = dome()
     checked, notes = repair_mesh(replace(mesh, uv=mesh.uv + [2, -1]), need_texture=True)
-    assert notes == ["dome: The texture was repeated for 96 faces outside of it."]
+    assert notes == ["dome: 96 faces outside the texture were wrapped onto it."]
     assert np.allclose(checked.uv[checked.uv_triangles], mesh.uv[mesh.uv_triangles])
 
 
@@ -197,4 +197,4 @@ def test_real_scans_need_little(shared_data: Path) -> None:
     _, notes = repair_mesh(read_mesh(shared_data / "scans/lps/head.obj"), need_texture=True)
     assert notes == []
     _, notes = repair_mesh(read_mesh(shared_data / "scans/james/james.obj"), need_texture=True)
-    assert len(notes) == 1 and "9 of 10 components were left out, 0.16% of the area" in notes[0]
+    assert len(notes) == 1 and "9 of 10 components were removed, 0.16% of the area" in notes[0]
