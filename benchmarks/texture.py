@@ -3,7 +3,8 @@
 `python -m benchmarks.texture [--json]`. A face-like sheet of 53,490 vertices and 106,000 triangles
 with holes for eyes and mouth, its quads all split the same way, is embedded and a picture warped
 into it at 1024 x 1024. Beside it scikit-image's piecewise affine warp at a mesh small enough for
-it. Times are the least of several runs in one process.
+it, and trimesh's closest points and repair of orientation on a surface with triangles of very
+different sizes. Times are the least of several runs in one process.
 """
 
 import time
@@ -12,10 +13,15 @@ from typing import Any
 
 import numpy as np
 from jaxtyping import Float, Int
-from scipy.spatial import Delaunay
+from scipy.spatial import Delaunay, cKDTree
 from skimage.transform import PiecewiseAffineTransform, warp
+from trimesh import Trimesh
+from trimesh.repair import fix_normals
+from trimesh.triangles import closest_point
 
 from benchmarks.report import Results, main
+from skinnet.mesh import Mesh, TriangleTree, repair_mesh
+from skinnet.mesh._orientation import is_inside_out
 from skinnet.mesh.raster import rasterise
 from skinnet.texture.mirror import find_mirror_vertices
 from skinnet.texture.tutte import compute_tutte_embedding, count_flipped_triangles
@@ -26,6 +32,12 @@ SIZE = 1024
 RUNS = 5
 POINTS, SMALL = 100, 256
 """Points and side of the picture for scikit-image, which takes 16 s for 400 at 1024 x 1024."""
+
+UNEVEN = 8000
+"""Vertices of the surface with triangles of different sizes, about as many as a scan has."""
+
+QUERIES = 5000
+"""Points near that surface whose closest points on it are looked for."""
 
 HOLES = ((-0.4, 0.25, 0.16, 0.06), (0.4, 0.25, 0.16, 0.06), (0.0, -0.45, 0.22, 0.04))
 """Middle and half axes of eyes and mouth, in half widths and half heights of the sheet."""
@@ -99,6 +111,51 @@ def against_skimage(points: int, size: int) -> Results:
     }
 
 
+def uneven_surface(
+    count: int, seed: int = 0
+) -> tuple[Float[np.ndarray, "vertices 3"], Int[np.ndarray, "triangles 3"]]:
+    """A bulge that faces +z, of size 2, with triangles that are small in the middle."""
+    place = np.random.default_rng(seed).uniform(-1, 1, (count, 2)) ** 3
+    vertices = np.column_stack([place, np.sqrt(2.5 - (place**2).sum(1))])
+    triangles = Delaunay(place).simplices.astype(np.int64)
+    flat = repair_mesh(Mesh(vertices, triangles)).mesh
+    return flat.vertices, flat.triangles
+
+
+def against_trimesh(count: int, queries: int) -> Results:
+    """Closest points, exact and by centroids, and orientation when a third of faces is flipped."""
+    vertices, triangles = uneven_surface(count)
+    rng = np.random.default_rng(1)
+    points = vertices[rng.integers(0, len(vertices), queries)] + rng.normal(0, 0.02, (queries, 3))
+    corners = vertices[triangles]
+
+    def by_centroids() -> Float[np.ndarray, "queries"]:
+        nearest = cKDTree(corners.mean(1)).query(points, 8)[1]
+        repeated = np.repeat(points, 8, 0)
+        away = closest_point(corners[nearest.ravel()], repeated) - repeated
+        return np.asarray(np.linalg.norm(away, axis=1).reshape(-1, 8).min(1))
+
+    flipped = np.where(rng.random((len(triangles), 1)) < 0.3, triangles[:, ::-1], triangles)
+
+    def by_trimesh(faces: Int[np.ndarray, "triangles 3"]) -> Int[np.ndarray, "triangles 3"]:
+        mesh = Trimesh(vertices, faces, process=False)
+        fix_normals(mesh, multibody=False)
+        return np.asarray(mesh.faces)
+
+    closest_s, closest = least(lambda: TriangleTree(vertices, triangles).query(points))
+    centroid_s, distance = least(by_centroids)
+    repair_s, _ = least(lambda: repair_mesh(Mesh(vertices, flipped)))
+    trimesh_s, _ = least(lambda: by_trimesh(flipped), runs=2)
+    return {
+        "closest_s": closest_s,
+        "closest_centroid_s": centroid_s,
+        "closest_centroid_error": float((distance - closest.distance).max()) / 2,
+        "repair_s": repair_s,
+        "repair_vs_trimesh_speedup": trimesh_s / repair_s,
+        "trimesh_inside_out": is_inside_out(vertices, by_trimesh(triangles[:, ::-1])),
+    }
+
+
 def least(action: Callable[[], Any], runs: int = RUNS) -> tuple[float, Any]:
     """The least time of several runs in seconds, and the last result."""
     times = []
@@ -110,7 +167,11 @@ def least(action: Callable[[], Any], runs: int = RUNS) -> tuple[float, Any]:
 
 
 def measure(
-    vertices: int = VERTICES, size: int = SIZE, points: int = POINTS, small: int = SMALL
+    vertices: int = VERTICES,
+    size: int = SIZE,
+    points: int = POINTS,
+    small: int = SMALL,
+    uneven: int = UNEVEN,
 ) -> Results:
     """Every figure, by name."""
     rows = int(np.ceil(np.sqrt(vertices * 1.02)))
@@ -136,6 +197,7 @@ def measure(
         "raster_s": raster_s,
         "warp_s": least(filled)[0],
         **against_skimage(points, small),
+        **against_trimesh(uneven, QUERIES),
     }
 
 

@@ -62,10 +62,9 @@ def find_inconsistent_faces(vertices: _Vertices, triangles: _Triangles) -> _Face
     agree with it. A component that can be oriented then falls into two; the one that keeps the
     larger area as it is wins. Of a component that cannot be oriented, nothing is flipped.
 
-    `trimesh.repair.fix_normals` takes 70 to 100 times as long once a third of the triangles are
-    flipped, and leaves open surfaces inside out (the scan of James, the face of
-    `benchmarks.texture`, whose rows `orientation_vs_trimesh_speedup` and `trimesh_inside_out` show
-    both).
+    `trimesh.repair.fix_normals` takes 80 times as long on scans of which a third is flipped, and an
+    open surface that is inside out stays so (`repair_vs_trimesh_speedup` and `trimesh_inside_out`
+    of `benchmarks.texture`).
     """
     count = len(triangles)
     first, second, same = pair_adjacent_faces(triangles)
