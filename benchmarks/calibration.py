@@ -19,6 +19,7 @@ import numpy as np
 import torch
 from jaxtyping import Bool, Float
 from scipy.interpolate import CubicSpline
+from skinnet.shape.default import default_model
 
 from benchmarks.report import Results, main
 from examples.lightstage import CAMERA, FILTER, LIGHT, person
@@ -27,11 +28,8 @@ from skinnet.appearance.colour import SkinColour
 from skinnet.calibration.calibrate import calibrate
 from skinnet.errors import InputError
 from skinnet.images.photograph import linear_to_srgb, srgb_to_linear, to_uint8
-from skinnet.physics.lookup import SkinLookup
-from skinnet.physics.reflectance import SkinReflectance
-from skinnet.physics.sources import spectrum_matrix
+from skinnet.physics import SkinLookup, SkinReflectance, load_spectrum_to_srgb
 from skinnet.pipeline.calibrate import ColourSettings
-from skinnet.shape.default import default_model
 from skinnet.texture.warp import TextureSpace
 
 MIX = np.array([[0.8, 0.05, 0.01], [0.03, 0.86, 0.04], [0.01, 0.06, 0.92]])
@@ -63,7 +61,7 @@ class Trial(NamedTuple):
 @cache
 def model_colours() -> Float[np.ndarray, "mel blood 3"]:
     """The colours of skin under D65 over melanin and blood, a grid."""
-    matrix = spectrum_matrix("D65", "mean")
+    matrix = load_spectrum_to_srgb("D65", "mean")
     lookup = SkinLookup(SkinReflectance(dtype=torch.float64), (64, 64))
     table = lookup.colours(matrix[None])[0].movedim(0, -1).numpy()
     mel, blood = (lookup.fractions(axis).numpy() for axis in (0, 1))
@@ -144,7 +142,7 @@ def known_trials(cover: str, noise: float, seeds: int, count: int) -> Iterator[T
 
 def crowd_trials(crowds: int, count: int) -> Iterator[Trial]:
     """Trials of people, under the light and camera of the example."""
-    matrix = spectrum_matrix(LIGHT, CAMERA).numpy()
+    matrix = load_spectrum_to_srgb(LIGHT, CAMERA).numpy()
     model = ColourSettings(LIGHT, CAMERA)._model_colours(matrix)
     for crowd in range(crowds):
         yield attempt(crowd_colours(crowd, count, matrix), model, FILTER, crowd)

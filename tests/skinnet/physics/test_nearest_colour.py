@@ -1,4 +1,4 @@
-"""The nearest node is the one a search through all of them finds."""
+"""The nearest colour is the one that an exhaustive search finds."""
 
 import numpy as np
 import pytest
@@ -6,7 +6,7 @@ import torch
 from jaxtyping import Float, Int
 from scipy.spatial import cKDTree
 
-from skinnet.physics import nearest_colour as nearest
+from skinnet.physics import nearest_colour
 from skinnet.physics.nearest_colour import NearestColour
 from skinnet.physics.reflectance import SkinReflectance
 from skinnet.physics.sources import load_spectrum_to_srgb
@@ -27,7 +27,11 @@ def brute_force(
     return np.concatenate([((q[:, None] - nodes) ** 2).sum(-1).argmin(1) for q in parts])
 
 
-def distance(table: Float[np.ndarray, "rows columns 3"], colours, index) -> Float[np.ndarray, "n"]:
+def distance(
+    table: Float[np.ndarray, "rows columns 3"],
+    colours: Float[np.ndarray, "n 3"],
+    index: Int[np.ndarray, "n"],
+) -> Float[np.ndarray, "n"]:
     return np.linalg.norm(colours - table.reshape(-1, 3)[index], axis=1)
 
 
@@ -35,24 +39,24 @@ SKIN = skin(40, 30)
 
 
 def queries(kind: str, count: int = 2000) -> Float[np.ndarray, "n 3"]:
-    draw = np.random.default_rng(0)
+    rng = np.random.default_rng(0)
     nodes = SKIN.reshape(-1, 3)
-    some = nodes[draw.integers(0, len(nodes), count)]
+    some = nodes[rng.integers(0, len(nodes), count)]
     return {
-        "near": lambda: some + draw.normal(0, 0.005, some.shape),
-        "off": lambda: some + draw.normal(0, 0.1, some.shape),
-        "anywhere": lambda: draw.uniform(-1, 2, some.shape),
-        "far": lambda: draw.normal(0, 1e4, some.shape),
-        "grey": lambda: np.repeat(draw.uniform(0, 1, (count, 1)), 3, 1),
-        "dark": lambda: draw.uniform(-0.001, 0.001, some.shape),
+        "near": lambda: some + rng.normal(0, 0.005, some.shape),
+        "off": lambda: some + rng.normal(0, 0.1, some.shape),
+        "anywhere": lambda: rng.uniform(-1, 2, some.shape),
+        "far": lambda: rng.normal(0, 1e4, some.shape),
+        "grey": lambda: np.repeat(rng.uniform(0, 1, (count, 1)), 3, 1),
+        "dark": lambda: rng.uniform(-0.001, 0.001, some.shape),
         "one place": lambda: np.tile(some[:1] + 0.01, (count, 1)),
     }[kind]()
 
 
 @pytest.mark.parametrize("pairs", [1 << 19, 1 << 12])
 @pytest.mark.parametrize("kind", ["near", "off", "anywhere", "far", "grey", "dark", "one place"])
-def test_it_is_that_of_brute_force(kind: str, pairs: int, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(nearest, "PAIRS", pairs)
+def test_it_agrees_with_brute_force(kind: str, pairs: int, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(nearest_colour, "_PAIRS", pairs)
     for colours in (queries(kind), queries(kind).astype(np.float32)):
         np.testing.assert_array_equal(NearestColour(SKIN)(colours), brute_force(SKIN, colours))
 
@@ -72,11 +76,13 @@ def test_midway_either_node_is_right(axis: int) -> None:
 
 
 @pytest.mark.parametrize("shape", [(25, 25), (1, 600), (2, 2), (1, 1)])
-def test_it_holds_for_any_grid(shape: tuple[int, int], monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(nearest, "PAIRS", 1 << 10)
-    draw = np.random.default_rng(1)
-    table = draw.normal(0, 1, (*shape, 3))
-    colours = draw.normal(0, 1, (3000, 3))
+def test_any_grid_agrees_with_brute_force(
+    shape: tuple[int, int], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(nearest_colour, "_PAIRS", 1 << 10)
+    rng = np.random.default_rng(1)
+    table = rng.normal(0, 1, (*shape, 3))
+    colours = rng.normal(0, 1, (3000, 3))
     np.testing.assert_array_equal(NearestColour(table)(colours), brute_force(table, colours))
 
 
@@ -103,9 +109,9 @@ def test_order_does_not_matter() -> None:
 @pytest.mark.slow
 def test_a_large_table_gives_the_answers_of_a_tree() -> None:
     table = skin(256, 256)
-    draw = np.random.default_rng(3)
-    near = table.reshape(-1, 3)[draw.integers(0, 256**2, 100_000)]
+    rng = np.random.default_rng(3)
+    near = table.reshape(-1, 3)[rng.integers(0, 256**2, 100_000)]
     for spread in (0.003, 0.03):
-        colours = near + draw.normal(0, spread, near.shape)
+        colours = near + rng.normal(0, spread, near.shape)
         expected = cKDTree(table.reshape(-1, 3)).query(colours)[1]
         np.testing.assert_array_equal(NearestColour(table)(colours), expected)
