@@ -1,6 +1,6 @@
+from ._ibug import IBUG as IBUG
 from .fit_settings import FitSettings as FitSettings
 from .fit_settings import StageRecord as StageRecord
-from .landmarks import IBUG as IBUG
 from .landmarks import check_landmarks as check_landmarks
 from .landmarks import read_landmark_vertices as read_landmark_vertices
 from .landmarks import read_landmarks as read_landmarks

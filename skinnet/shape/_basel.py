@@ -1,7 +1,7 @@
 """The Basel Face Models of 2009, 2017 and 2019.
 
-Their files may not be redistributed, so these loaders were written against the published layout and
-are tested on files of that layout, not on the models themselves.
+Their licence forbids copies, so the loaders follow the published layout and are tested on files of
+that layout, not on the models themselves.
 """
 
 import json
@@ -19,7 +19,7 @@ from scipy.spatial import cKDTree
 from skinnet.errors import InputError
 from skinnet.files import READ_ERRORS
 from skinnet.mesh._orientation import is_inside_out
-from skinnet.shape.model import ShapeModel, checked_model
+from skinnet.shape.model import ShapeModel
 
 _LANDMARKS = {
     "right_brow_inner": "right.eyebrow.inner_lower",
@@ -43,11 +43,11 @@ _LANDMARKS = {
 
 
 def load_basel_2009(path: Path) -> ShapeModel:
-    """01_MorphableModel.mat (Paysan et al. 2009): micrometres, 53,490 vertices, 199 modes.
+    """Load 01_MorphableModel.mat (Paysan et al. 2009): micrometres, 53,490 vertices, 199 modes.
 
-    `shapeMU` [3N, 1], `shapePC` [3N, S] of unit columns, `shapeEV` [S, 1], which are standard
-    deviations, and `tl` [T, 3], counted from one. The file has no landmarks. Raises `InputError`
-    for another layout.
+    `shapeMU` [3N, 1] is the mean, `shapePC` [3N, S] holds unit columns, `shapeEV` [S, 1] standard
+    deviations, and `tl` [T, 3] vertices counted from one. The file has no landmarks. Raises
+    `InputError` for another layout.
     """
     names = ("shapeMU", "shapePC", "shapeEV", "tl")
     try:
@@ -55,11 +55,11 @@ def load_basel_2009(path: Path) -> ShapeModel:
         mean, modes, deviations, triangles = (np.asarray(arrays[name]) for name in names)
     except (MatReadError, *READ_ERRORS) as error:
         raise InputError(
-            f"{path} is no Basel Face Model of 2009, whose .mat holds {', '.join(names)} "
+            f"{path} is not a Basel Face Model of 2009, whose .mat holds {', '.join(names)} "
             f"({error!r}); give 01_MorphableModel.mat."
         ) from error
     variances = np.square(deviations.astype(np.float64).ravel())
-    return _model(path, mean, modes, variances, triangles.astype(np.int64) - 1, {}, 1e-3)
+    return _build_model(path, mean, modes, variances, triangles.astype(np.int64) - 1, {}, 1e-3)
 
 
 def load_basel_2017(path: Path) -> ShapeModel:
@@ -77,35 +77,37 @@ def load_basel_2017(path: Path) -> ShapeModel:
                 for name in ("mean", "pcaBasis", "pcaVariance")
             )
             cells = np.asarray(file["shape/representer/cells"]).astype(np.int64)
-            marks = _marks(file)
+            points = _read_landmarks(file)
     except READ_ERRORS as error:
         raise InputError(
-            f"{path} is no Basel Face Model of 2017 or 2019, whose .h5 holds shape/model/mean, "
+            f"{path} is not a Basel Face Model of 2017 or 2019, whose .h5 holds shape/model/mean, "
             f"pcaBasis, pcaVariance and shape/representer/cells ({error!r})."
         ) from error
     triangles = cells.T if cells.shape[:1] == (3,) else cells
-    return _model(path, mean, modes, variances.astype(np.float64).ravel(), triangles, marks, 1.0)
+    return _build_model(
+        path, mean, modes, variances.astype(np.float64).ravel(), triangles, points, 1.0
+    )
 
 
-def _model(
+def _build_model(
     path: Path,
     mean: np.ndarray,
     modes: np.ndarray,
     variances: Float[np.ndarray, "modes"],
     triangles: Int[np.ndarray, "..."],
-    marks: dict[str, list[float]],
+    points: dict[str, list[float]],
     millimetres: float,
 ) -> ShapeModel:
     if mean.size % 3 or modes.ndim != 2 or len(modes) != mean.size:
         raise InputError(
-            f"{path} is no shape model that can be used: its mean has {mean.size:,} numbers and "
+            f"{path} is not a usable shape model: its mean has {mean.size:,} numbers and "
             f"its basis is {list(modes.shape)}."
         )
     basis = np.ascontiguousarray(modes.T, np.float64)
     # Statismo before 0.9 multiplied the columns by the standard deviations.
     with np.errstate(invalid="ignore"):
         basis /= np.maximum(np.linalg.norm(basis, axis=1, keepdims=True), 1e-300)
-    model = checked_model(
+    model = ShapeModel.from_arrays(
         mean.astype(np.float64).reshape(-1, 3),
         basis.reshape(len(basis), -1, 3),
         variances,
@@ -113,22 +115,22 @@ def _model(
         millimetres=millimetres,
         name=str(path),
     )
-    return _completed(model, marks)
+    return _complete(model, points)
 
 
-def _completed(model: ShapeModel, marks: dict[str, list[float]]) -> ShapeModel:
-    """With landmarks, and triangles that look outside: those of 2009 look inside."""
-    near = cKDTree(model.mean)
+def _complete(model: ShapeModel, points: dict[str, list[float]]) -> ShapeModel:
+    """Add landmarks, and make triangles counter-clockwise: those of 2009 are clockwise."""
+    tree = cKDTree(model.mean)
     landmarks = {
-        name: int(near.query(marks[mark])[1]) for name, mark in _LANDMARKS.items() if mark in marks
+        name: int(tree.query(points[key])[1]) for name, key in _LANDMARKS.items() if key in points
     }
-    turn = [0, 2, 1] if is_inside_out(model.mean, model.triangles) else [0, 1, 2]
-    return replace(model, landmarks=landmarks, triangles=model.triangles[:, turn])
+    order = [0, 2, 1] if is_inside_out(model.mean, model.triangles) else [0, 1, 2]
+    return replace(model, landmarks=landmarks, triangles=model.triangles[:, order])
 
 
-def _marks(file: Any) -> dict[str, list[float]]:
+def _read_landmarks(file: Any) -> dict[str, list[float]]:
     if "metadata/landmarks/json" not in file:
         return {}
     stored = file["metadata/landmarks/json"][()]
     text = stored if isinstance(stored, bytes | str) else np.asarray(stored).tobytes()
-    return {mark["id"]: mark["coordinates"] for mark in json.loads(text)}
+    return {point["id"]: point["coordinates"] for point in json.loads(text)}

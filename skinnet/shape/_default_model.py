@@ -7,7 +7,7 @@ import numpy as np
 from jaxtyping import Bool, Float, Int
 
 from skinnet.errors import InputError
-from skinnet.shape.landmarks import IBUG
+from skinnet.shape._ibug import IBUG
 from skinnet.shape.model import ShapeModel
 
 FACE = (1.25, 0.975, -0.175, 2.5)
@@ -164,7 +164,9 @@ def _drawn(half: Bool[np.ndarray, "rows half"]) -> Float[np.ndarray, "draws vert
     numbers = torch.randn(DRAWS // 2, IDENTITY_SIZE, generator=lot, dtype=torch.float64)
     rows, middle = half.shape[0], half.shape[1] - 1
     few = torch.cat([numbers, -numbers]).split(25)
-    heads = (compute_head_radius(each, rows, 2 * middle + 1)[:, 0, :, middle:].numpy() for each in few)
+    heads = (
+        compute_head_radius(each, rows, 2 * middle + 1)[:, 0, :, middle:].numpy() for each in few
+    )
     return np.concatenate([head[:, half] for head in heads])
 
 

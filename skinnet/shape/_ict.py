@@ -1,7 +1,7 @@
 """ICT-FaceKit's shape model (Li et al. 2020, USC ICT, MIT licence): its folder, or an .npz of it.
 
-Modes are scaled by the standard deviation over people, so variances are one; a unit is a
-centimetre. The expression shapes in the folder are not read.
+Modes are scaled by the standard deviation over people, so variances are one. The unit is a
+centimetre. Expressions are not read.
 """
 
 import json
@@ -17,8 +17,8 @@ from skinnet.errors import InputError
 from skinnet.mesh._mesh_parts import read_obj_positions
 from skinnet.mesh._seams import match_positions, merge_coordinates
 from skinnet.mesh.mesh_file import read_mesh
-from skinnet.shape.landmarks import name_ibug_point
-from skinnet.shape.model import ShapeModel, checked_model
+from skinnet.shape._ibug import name_ibug_point
+from skinnet.shape.model import ShapeModel
 
 NEUTRAL = "generic_neutral_mesh.obj"
 FACE = 9409
@@ -27,8 +27,8 @@ FACE = 9409
 MILLIMETRES = 10.0
 
 
-def ict_from_arrays(path: Path, arrays: Mapping[str, Any], whole: bool = False) -> ShapeModel:
-    """The model of an .npz with `verts`, `id_modes`, `tris`, `tris_uv`, `uv` and `landmarks68`.
+def read_ict_arrays(path: Path, arrays: Mapping[str, Any], whole: bool = False) -> ShapeModel:
+    """Make the model of `verts`, `id_modes`, `tris`, `tris_uv`, `uv` and `landmarks68`.
 
     With `whole` the head with its eyes and teeth, otherwise the face. Raises `InputError` if the
     arrays do not belong together.
@@ -37,14 +37,14 @@ def ict_from_arrays(path: Path, arrays: Mapping[str, Any], whole: bool = False) 
     triangles = np.asarray(arrays["tris"], np.int64)
     uv = np.asarray(arrays["uv"], np.float64)
     uv_triangles = np.asarray(arrays["tris_uv"], np.int64)
-    model = checked_model(
+    model = ShapeModel.from_arrays(
         np.asarray(arrays["verts"], np.float64),
         modes,
         np.ones(len(modes)),
         triangles,
         uv,
         uv_triangles,
-        _named(arrays["landmarks68"]),
+        _name_landmarks(arrays["landmarks68"]),
         MILLIMETRES,
         str(path),
     )
@@ -52,15 +52,15 @@ def ict_from_arrays(path: Path, arrays: Mapping[str, Any], whole: bool = False) 
     uv, uv_triangles = merge_coordinates(triangles, uv, uv_triangles)
     model = replace(model, uv=uv, uv_triangles=uv_triangles)
     count = int(arrays["face_vertex_count"])
-    return model if whole else _face(model, np.arange(len(model.mean)) < count)
+    return model if whole else _crop_to_face(model, np.arange(len(model.mean)) < count)
 
 
 def load_ict_folder(folder: Path, whole: bool = False) -> ShapeModel:
-    """The model of a folder FaceXModel: `NEUTRAL`, identity000.obj and so on, vertex_indices.json.
+    """Load a folder FaceXModel: `NEUTRAL`, identity000.obj and so on, vertex_indices.json.
 
-    With `whole` the head with its eyes and teeth, otherwise the face. Landmarks are those of
-    vertex_indices.json, whose numbering goes with the release of the meshes. Raises `InputError` if
-    there are no identities, or one has another number of vertices than the neutral mesh.
+    With `whole` the head with its eyes and teeth, otherwise the face. Landmarks come from
+    vertex_indices.json, whose vertex numbers belong to the same release of the meshes. Raises
+    `InputError` if there are no identities, or one has another number of vertices than `NEUTRAL`.
     """
     neutral = read_mesh(folder / NEUTRAL)
     listed = read_obj_positions(folder / NEUTRAL)
@@ -68,22 +68,24 @@ def load_ict_folder(folder: Path, whole: bool = False) -> ShapeModel:
     if not files:
         raise InputError(f"{folder} has {NEUTRAL}, but no identity000.obj; copy the whole folder.")
     index = match_positions(listed, neutral.vertices)
-    basis = np.stack([_moved(file, listed)[index] for file in files]) - neutral.vertices
-    model = checked_model(
+    basis = np.stack([_read_identity(file, listed)[index] for file in files]) - neutral.vertices
+    model = ShapeModel.from_arrays(
         neutral.vertices,
         basis,
         np.ones(len(basis)),
         neutral.triangles,
         neutral.uv,
         neutral.uv_triangles,
-        _listed_landmarks(folder / "vertex_indices.json", index),
+        _read_landmarks(folder / "vertex_indices.json", index),
         MILLIMETRES,
         str(folder),
     )
-    return model if whole else _face(model, index < FACE)
+    return model if whole else _crop_to_face(model, index < FACE)
 
 
-def _moved(file: Path, listed: Float[np.ndarray, "listed 3"]) -> Float[np.ndarray, "listed 3"]:
+def _read_identity(
+    file: Path, listed: Float[np.ndarray, "listed 3"]
+) -> Float[np.ndarray, "listed 3"]:
     positions = read_obj_positions(file)
     if positions.shape != listed.shape:
         raise InputError(
@@ -93,25 +95,25 @@ def _moved(file: Path, listed: Float[np.ndarray, "listed 3"]) -> Float[np.ndarra
     return positions
 
 
-def _listed_landmarks(path: Path, index: np.ndarray) -> dict[str, int]:
+def _read_landmarks(path: Path, index: np.ndarray) -> dict[str, int]:
     if not path.is_file():
         return {}
     try:
         listed = json.loads(path.read_text(encoding="utf-8"))["idx_to_landmark_verts"]
         place = {int(vertex): number for number, vertex in enumerate(index)}
-        return _named([place[vertex] for vertex in listed])
+        return _name_landmarks([place[vertex] for vertex in listed])
     except (ValueError, LookupError, TypeError) as error:
         raise InputError(
             f"{path} has no usable landmarks ({error!r}); copy it again, or remove it."
         ) from error
 
 
-def _named(vertices: Any) -> dict[str, int]:
+def _name_landmarks(vertices: Any) -> dict[str, int]:
     return {name_ibug_point(number): int(vertex) for number, vertex in enumerate(vertices)}
 
 
-def _face(model: ShapeModel, keep: np.ndarray) -> ShapeModel:
-    """The face; triangles of other parts on its vertices lie in other tiles of the texture."""
+def _crop_to_face(model: ShapeModel, keep: np.ndarray) -> ShapeModel:
+    """Keep the face. Other parts share its vertices, but lie in other tiles of the texture."""
     if model.uv is not None and model.uv_triangles is not None:
         own = (model.uv[model.uv_triangles] <= 1).all((1, 2))
         triangles, uv_triangles = model.triangles[own], model.uv_triangles[own]

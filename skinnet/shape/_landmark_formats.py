@@ -22,15 +22,13 @@ _GROUPS = {
     "mouth": range(48, 68),
 }
 
-Named = dict[str, list[float]]
 
+def parse_ljson(document: Mapping[str, Any]) -> dict[str, list[float]]:
+    """Parse a landmarker.io file, versions 1 to 3, into iBUG numbers and points.
 
-def parse_ljson(document: Mapping[str, Any]) -> Named:
-    """iBUG numbers and points of a landmarker.io file, versions 1 to 3; of several sets the first.
-
-    Points are numbered by their label and place in it, else, where 68 stand under other labels, by
-    their order; points that are null are left out. Raises `InputError` or `KeyError`, `TypeError`,
-    `ValueError` or `IndexError` for another layout.
+    Of several sets of points, the first counts. Points are numbered by their label and place in it;
+    68 points under unknown labels are numbered in their order. Points that are null are left out.
+    Raises `InputError` or `KeyError`, `TypeError`, `ValueError` or `IndexError` for another layout.
     """
     version = document["version"]
     if version == 1:
@@ -44,22 +42,22 @@ def parse_ljson(document: Mapping[str, Any]) -> Named:
         labelled = [
             (label["label"], [points[i] for i in label["mask"]]) for label in sets[0]["labels"]
         ]
-    return _numbered(labelled)
+    return _number_points(labelled)
 
 
-def parse_pp(text: bytes) -> Named:
-    """Names and points of a MeshLab file of picked points; those switched off are left out.
+def parse_pp(text: bytes) -> dict[str, list[float]]:
+    """Parse a MeshLab file of picked points into names and points; inactive ones are left out.
 
     Raises `InputError` for entities, and `ExpatError`, `KeyError` or `ValueError` for another file.
     """
-    found: Named = {}
+    found: dict[str, list[float]] = {}
 
     def start(tag: str, values: dict[str, str]) -> None:
         if tag == "point" and values.get("active", "1") != "0":
             found[values["name"]] = [float(values[axis]) for axis in "xyz"]
 
     def refuse(*_: object) -> None:
-        raise InputError("the file declares entities, which no list of points needs")
+        raise InputError("the file declares XML entities, which a list of points does not need")
 
     parser = expat.ParserCreate()
     parser.StartElementHandler = start
@@ -68,7 +66,7 @@ def parse_pp(text: bytes) -> Named:
     return found
 
 
-def _numbered(labelled: list[tuple[str, list[Any]]]) -> Named:
+def _number_points(labelled: list[tuple[str, list[Any]]]) -> dict[str, list[float]]:
     known = [(label, points) for label, points in labelled if label in _GROUPS]
     everything = [point for _, points in labelled for point in points]
     if known:

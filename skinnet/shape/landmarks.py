@@ -1,4 +1,4 @@
-"""Named points of a face: on a model as vertices, on a scan as positions."""
+"""Named points of a face: vertices of a model, positions on a scan."""
 
 import csv
 import json
@@ -14,35 +14,11 @@ from scipy.spatial import cKDTree
 from skinnet.errors import InputError
 from skinnet.files import write_text
 from skinnet.mesh.mesh import Mesh
+from skinnet.shape._ibug import resolve_name
 from skinnet.shape._landmark_formats import parse_ljson, parse_pp
 from skinnet.shape.model import ShapeModel
 from skinnet.shape.similarity import fit_similarity
 
-IBUG = {
-    "right_brow_outer": 17,
-    "right_brow_inner": 21,
-    "left_brow_inner": 22,
-    "left_brow_outer": 26,
-    "nose_bridge": 27,
-    "nose_tip": 30,
-    "right_nostril": 31,
-    "nose_base": 33,
-    "left_nostril": 35,
-    "right_eye_outer": 36,
-    "right_eye_inner": 39,
-    "left_eye_inner": 42,
-    "left_eye_outer": 45,
-    "mouth_right": 48,
-    "mouth_top": 51,
-    "mouth_left": 54,
-    "mouth_bottom": 57,
-    "lips_upper": 62,
-    "lips_lower": 66,
-    "chin": 8,
-}
-"""The landmarks of a fit with their numbers among iBUG's 68; right is the person's right, x < 0."""
-
-POINTS = 68
 FEWEST = 4
 """A fit needs at least this many landmarks in common with its model."""
 
@@ -50,39 +26,81 @@ FAR = 0.1
 """Largest distance of a landmark from the mesh, in lengths of the mesh."""
 
 MIRRORED = 0.2
-"""Squares left by the best reflection over those of the best rotation: below, sides are swapped.
-Of real and drawn faces it is above 5, of swapped ones below 0.2, of points in a plane near 1."""
-
-Point = Float[np.ndarray, "3"]
-_NAMES = {number: name for name, number in IBUG.items()}
+"""Squared residual of the best reflection over that of the best rotation; below this, left and
+right are swapped. It is above 5 for real and synthetic faces, below 0.2 for swapped ones, and near
+1 for points in a plane."""
 
 
-def name_ibug_point(number: int) -> str:
-    """The name of a point of iBUG's 68: one of `IBUG`, else ibug_<number>."""
-    return _NAMES.get(number, f"ibug_{number}")
+def read_landmarks(path: Path, mesh: Mesh | None = None) -> dict[str, Float[np.ndarray, "3"]]:
+    """Read the named points of a scan.
 
+    Formats are .csv (lines name,x,y,z), .json (name to [x, y, z], or to the number of a vertex of
+    `mesh`), menpo's .ljson (landmarker.io, versions 1 to 3) and MeshLab's .pp. A name may be one of
+    `IBUG`, ibug_<number>, or the number among iBUG's 68 from 0; other names are kept.
 
-def read_landmarks(path: Path, mesh: Mesh | None = None) -> dict[str, Point]:
-    """Named points of a scan, in its unit and frame.
+    Args:
+        path: The file.
+        mesh: The scan, for a file that gives vertex numbers.
 
-    From .csv (lines name,x,y,z), .json (name to [x, y, z], or to the number of a vertex of `mesh`),
-    menpo's .ljson (landmarker.io, versions 1 to 3) or MeshLab's .pp. A name may be one of `IBUG`,
-    ibug_<number>, or the number among iBUG's 68 from 0; others are kept.
+    Returns:
+        Points by name, in the unit and frame of the file.
 
-    Raises `InputError` for a file that is missing or damaged, and for a vertex out of range.
+    Raises:
+        InputError: If the file is missing or damaged, or a vertex is out of range.
+
+    Example:
+        >>> from pathlib import Path
+        >>> from skinnet.shape import read_landmarks
+        >>> _ = Path("face.csv").write_text("nose_tip,0,1.5,9")
+        >>> read_landmarks(Path("face.csv"))
+        {'nose_tip': array([0. , 1.5, 9. ])}
     """
-    named = {_canonical(name): value for name, value in _parse(Path(path)).items()}
-    return {name: _position(path, name, value, mesh) for name, value in named.items()}
+    named = {resolve_name(name): value for name, value in _parse(Path(path)).items()}
+    return {name: _locate(path, name, value, mesh) for name, value in named.items()}
 
 
 def read_landmark_vertices(path: Path, vertex_count: int) -> dict[str, int]:
-    """Vertices of a model's landmarks from .json (name to vertex); names as in `read_landmarks`."""
-    named = {_canonical(name): value for name, value in _parse(Path(path)).items()}
-    return {name: _vertex(path, name, value, vertex_count) for name, value in named.items()}
+    """Read the vertices of a model's landmarks from a .json file of names and vertex numbers.
+
+    Args:
+        path: The file. Names are as for `read_landmarks`.
+        vertex_count: Number of the model's vertices.
+
+    Returns:
+        Vertices by name.
+
+    Raises:
+        InputError: If the file is missing or damaged, or a vertex is out of range.
+
+    Example:
+        >>> from pathlib import Path
+        >>> from skinnet.shape import read_landmark_vertices
+        >>> _ = Path("model.json").write_text('{"8": 120, "nose_tip": 7}')
+        >>> read_landmark_vertices(Path("model.json"), vertex_count=200)
+        {'chin': 120, 'nose_tip': 7}
+    """
+    named = {resolve_name(name): value for name, value in _parse(Path(path)).items()}
+    return {name: _check_vertex(path, name, value, vertex_count) for name, value in named.items()}
 
 
-def write_landmarks(path: Path, points: Mapping[str, Point]) -> None:
-    """Write named points as .csv or .json, for `read_landmarks`."""
+def write_landmarks(path: Path, points: Mapping[str, Float[np.ndarray, "3"]]) -> None:
+    """Write named points as .csv or .json, in the form that `read_landmarks` reads.
+
+    Args:
+        path: The file, with the suffix .csv or .json.
+        points: Points by name.
+
+    Raises:
+        InputError: If `path` has another suffix.
+
+    Example:
+        >>> import numpy as np
+        >>> from pathlib import Path
+        >>> from skinnet.shape import write_landmarks
+        >>> write_landmarks(Path("chin.csv"), {"chin": np.array([0, -80, 12.5])})
+        >>> Path("chin.csv").read_text().splitlines()
+        ['name,x,y,z', 'chin,0,-80,12.5']
+    """
     rows = {name: [float(value) for value in point] for name, point in points.items()}
     suffix = Path(path).suffix.lower()
     if suffix == ".json":
@@ -95,16 +113,33 @@ def write_landmarks(path: Path, points: Mapping[str, Point]) -> None:
 
 
 def check_landmarks(
-    points: Mapping[str, Point],
+    points: Mapping[str, Float[np.ndarray, "3"]],
     model: ShapeModel,
     mesh: Mesh | None = None,
     name: str = "The landmarks",
 ) -> list[str]:
-    """Names that the points of a scan and a model have in common, in the model's order.
+    """Check that the landmarks of a scan can start a fit.
 
-    `mesh` is the scan; `name` stands for the points in errors. Raises `InputError` if fewer than
-    `FEWEST` are common, or some are not finite, lie on a line, far from the mesh, or fit the
-    model's mirror image better than the model.
+    Args:
+        points: Points of the scan by name.
+        model: The shape model, whose landmarks have the same names.
+        mesh: The scan; None to skip the distance check.
+        name: What error messages call the points.
+
+    Returns:
+        Names that scan and model have in common, in the model's order.
+
+    Raises:
+        InputError: If fewer than four names are common, or points are not finite, lie on a line,
+        are
+            far from the mesh, or fit the model's mirror image better than the model.
+
+    Example:
+        >>> from skinnet.shape import check_landmarks, load_shape_model
+        >>> model = load_shape_model()
+        >>> points = {name: model.mean[vertex] for name, vertex in model.landmarks.items()}
+        >>> len(check_landmarks(points, model))
+        20
     """
     if not model.landmarks:
         raise InputError(
@@ -158,7 +193,7 @@ def _check_side(
 def _parse(path: Path) -> Mapping[str, Any]:
     parse = _PARSERS.get(path.suffix.lower())
     if parse is None:
-        raise InputError(f"{path} is no landmark file; give one of {', '.join(_PARSERS)}.")
+        raise InputError(f"{path} is not a landmark file; give one of {', '.join(_PARSERS)}.")
     try:
         return parse(path.read_bytes())
     except FileNotFoundError:
@@ -169,7 +204,7 @@ def _parse(path: Path) -> Mapping[str, Any]:
         raise InputError(f"{path} is damaged or of another layout ({error!r}).") from error
 
 
-def _csv(text: bytes) -> dict[str, list[float]]:
+def _parse_csv(text: bytes) -> dict[str, list[float]]:
     rows = [row for row in csv.reader(text.decode("utf-8-sig").splitlines()) if row]
     if rows and [cell.strip().lower() for cell in rows[0]] == ["name", "x", "y", "z"]:
         rows = rows[1:]
@@ -181,44 +216,37 @@ def _csv(text: bytes) -> dict[str, list[float]]:
     return named
 
 
-def _json(text: bytes) -> Mapping[str, Any]:
+def _parse_json(text: bytes) -> Mapping[str, Any]:
     document = json.loads(text)
     if not isinstance(document, dict):
-        raise InputError("it is no object of names")
+        raise InputError("it is not an object of names")
     return document
 
 
 _PARSERS: Mapping[str, Callable[[bytes], Mapping[str, Any]]] = {
-    ".csv": _csv,
-    ".json": _json,
+    ".csv": _parse_csv,
+    ".json": _parse_json,
     ".ljson": lambda text: parse_ljson(json.loads(text)),
     ".pp": parse_pp,
 }
 
 
-def _canonical(name: str) -> str:
-    number = name.strip().removeprefix("ibug_")
-    if not number.isdecimal():
-        return name.strip()
-    if int(number) >= POINTS:
-        raise InputError(f"Landmark {name} is none of iBUG's, which go from 0 to {POINTS - 1}.")
-    return name_ibug_point(int(number))
-
-
-def _position(path: Path, name: str, value: Any, mesh: Mesh | None) -> Point:
+def _locate(path: Path, name: str, value: Any, mesh: Mesh | None) -> Float[np.ndarray, "3"]:
     if isinstance(value, int) and mesh is not None:
-        return np.array(mesh.vertices[_vertex(path, name, value, len(mesh.vertices))], np.float64)
+        return np.array(
+            mesh.vertices[_check_vertex(path, name, value, len(mesh.vertices))], np.float64
+        )
     if isinstance(value, int):
         raise InputError(f"{path} gives {name} as the number of a vertex; hand in the mesh too.")
     if not isinstance(value, Sequence) or len(value) != 3:
-        raise InputError(f"{path}: {name} is {value!r}, and three coordinates are wanted.")
+        raise InputError(f"{path}: {name} is {value!r}, and three coordinates are needed.")
     try:
         return np.array([float(number) for number in value])
     except (TypeError, ValueError) as error:
-        raise InputError(f"{path}: {name} is {value!r}, which are no numbers.") from error
+        raise InputError(f"{path}: {name} is {value!r}, which are not numbers.") from error
 
 
-def _vertex(path: Path, name: str, value: Any, count: int) -> int:
+def _check_vertex(path: Path, name: str, value: Any, count: int) -> int:
     if not isinstance(value, int) or not 0 <= value < count:
         raise InputError(
             f"{path}: {name} is vertex {value!r}, and vertices go from 0 to {count - 1:,}."

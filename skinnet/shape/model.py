@@ -9,19 +9,35 @@ from jaxtyping import Bool, Float, Int
 from skinnet.errors import InputError
 from skinnet.mesh.mesh import Mesh
 
-Numbers = Float[np.ndarray, "..."]
-Indices = Int[np.ndarray, "..."]
-
 
 @dataclass(frozen=True)
 class ShapeModel:
-    """shape(alpha) = mean + sum_k alpha_k basis_k (Alotaibi & Smith 2017, section 4.1).
+    """A linear model of face shapes: vertices = mean + sum_k alpha_k basis_k.
 
-    `mean` [N, 3] and `basis` [S, N, 3] in the model's unit, of `millimetres` each; x points to the
-    face's left, y up, z forward. `variances` [S] are those of alpha over people. `uv` [U, 2] and
-    `uv_triangles` [T, 3] are the model's own texture space, None until one is made. `landmarks`
-    gives the vertex of each named point (`skinnet.shape.landmarks`). Arrays out of a file go
-    through `checked_model`.
+    x points to the face's left, y up, z forward. The constructor takes arrays as they are; use
+    `from_arrays` for arrays from a file.
+
+    Attributes:
+        mean: Vertices of the mean face, in the model's unit.
+        basis: Modes, in the model's unit.
+        variances: Variance of each coefficient alpha_k over people.
+        triangles: Vertices of each triangle, counter-clockwise as seen from outside.
+        uv: Texture coordinates in [0, 1]; None for a model without a texture space.
+        uv_triangles: Texture coordinates of each triangle's corners.
+        landmarks: Vertex of each named point; `IBUG` lists the names that a fit knows.
+        millimetres: Length of the model's unit in mm.
+        name: What error messages call the model, usually its path.
+
+    Source:
+        Section 4.1 of Alotaibi & Smith 2017.
+
+    Example:
+        >>> import numpy as np
+        >>> from skinnet.shape import ShapeModel
+        >>> mean, basis = np.eye(3), np.ones((1, 3, 3))
+        >>> model = ShapeModel(mean, basis, np.ones(1), np.array([[0, 1, 2]]))
+        >>> model.reconstruct(np.array([2.0]))[0]
+        array([3., 2., 2.])
     """
 
     mean: Float[np.ndarray, "vertices 3"]
@@ -34,18 +50,92 @@ class ShapeModel:
     millimetres: float = 1.0
     name: str = "model"
 
+    @classmethod
+    def from_arrays(
+        cls,
+        mean: Float[np.ndarray, "..."],
+        basis: Float[np.ndarray, "..."],
+        variances: Float[np.ndarray, "..."],
+        triangles: Int[np.ndarray, "..."],
+        uv: Float[np.ndarray, "..."] | None = None,
+        uv_triangles: Int[np.ndarray, "..."] | None = None,
+        landmarks: Mapping[str, int] | None = None,
+        millimetres: float = 1.0,
+        name: str = "model",
+    ) -> "ShapeModel":
+        """Make a model of arrays that may not belong together.
+
+        Args:
+            mean: Vertices [N, 3] of the mean face, in the model's unit.
+            basis: Modes [S, N, 3], in the model's unit.
+            variances: Variances [S] of the coefficients, 0 or more.
+            triangles: Vertices [T, 3] of each triangle.
+            uv: Texture coordinates [U, 2].
+            uv_triangles: Texture coordinates [T, 3] of each triangle's corners.
+            landmarks: Vertex of each named point.
+            millimetres: Length of the model's unit in mm, above 0.
+            name: What error messages call the model.
+
+        Returns:
+            The model, which shares the arrays.
+
+        Raises:
+            InputError: If shapes disagree, values are NaN or infinite, a variance is negative, or
+                a triangle or landmark is out of range.
+        """
+        known = {} if landmarks is None else dict(landmarks)
+        fault = (
+            _find_disagreement(mean, basis, variances)
+            or _find_bad_triangle(triangles, len(mean), "vertices")
+            or _find_bad_texture(triangles, uv, uv_triangles)
+            or _find_bad_value({"mean": mean, "basis": basis, "variances": variances, "uv": uv})
+        )
+        outside = [each for each, vertex in known.items() if not 0 <= vertex < len(mean)]
+        if not fault and (variances < 0).any():
+            fault = f"a variance is {variances.min():.3g}, and none is negative"
+        if not fault and outside:
+            fault = f"landmark {outside[0]} is vertex {known[outside[0]]} of {len(mean):,}"
+        if not fault and not millimetres > 0:
+            fault = f"its unit is {millimetres} millimetres"
+        if fault:
+            raise InputError(f"{name} is not a usable shape model: {fault}.")
+        return cls(mean, basis, variances, triangles, uv, uv_triangles, known, millimetres, name)
+
     def reconstruct(self, alpha: Float[np.ndarray, "modes"]) -> Float[np.ndarray, "vertices 3"]:
-        """Vertices of the face with these coefficients; fewer than S stand for the first."""
+        """Compute the vertices of a face.
+
+        Args:
+            alpha: Coefficients of the first modes; the others are 0.
+
+        Returns:
+            Vertices in the model's unit.
+        """
         return self.mean + np.tensordot(alpha, self.basis[: len(alpha)], 1)
 
     def build_mesh(self, alpha: Float[np.ndarray, "modes"]) -> Mesh:
-        """The face with these coefficients as a mesh without a texture."""
-        return Mesh(
-            self.reconstruct(alpha), self.triangles, self.uv, self.uv_triangles, name=self.name
-        )
+        """Build the mesh of a face.
+
+        Args:
+            alpha: Coefficients of the first modes; the others are 0.
+
+        Returns:
+            The mesh, with the model's texture coordinates and no texture.
+        """
+        vertices = self.reconstruct(alpha)
+        return Mesh(vertices, self.triangles, self.uv, self.uv_triangles, name=self.name)
 
     def truncate(self, modes: int) -> "ShapeModel":
-        """The model's first modes. Raises `InputError` if it has fewer."""
+        """Keep the first modes.
+
+        Args:
+            modes: How many modes to keep.
+
+        Returns:
+            A model with that many modes.
+
+        Raises:
+            InputError: If the model has fewer modes.
+        """
         if not 0 < modes <= len(self.variances):
             raise InputError(
                 f"{self.name} has {len(self.variances)} modes, and {modes} are asked for; ask for "
@@ -54,7 +144,14 @@ class ShapeModel:
         return replace(self, basis=self.basis[:modes], variances=self.variances[:modes])
 
     def crop(self, keep: Bool[np.ndarray, "vertices"]) -> "ShapeModel":
-        """The model of some vertices, with the triangles and landmarks that lie wholly on them."""
+        """Keep some vertices, and the triangles and landmarks that lie wholly on them.
+
+        Args:
+            keep: True for the vertices to keep.
+
+        Returns:
+            The model of these vertices, in their order.
+        """
         number = np.cumsum(keep) - 1
         inside = keep[self.triangles].all(1)
         uv, uv_triangles = self.uv, self.uv_triangles
@@ -72,42 +169,11 @@ class ShapeModel:
         )
 
 
-def checked_model(
-    mean: Numbers,
-    basis: Numbers,
-    variances: Numbers,
-    triangles: Indices,
-    uv: Numbers | None = None,
-    uv_triangles: Indices | None = None,
-    landmarks: Mapping[str, int] | None = None,
-    millimetres: float = 1.0,
-    name: str = "model",
-) -> ShapeModel:
-    """A model of arrays that are not known to belong together.
-
-    Raises `InputError` naming the model and the fault: shapes that disagree, values that are NaN or
-    infinite, negative variances, triangles or landmarks out of range.
-    """
-    marks = {} if landmarks is None else dict(landmarks)
-    fault = (
-        _disagreement(mean, basis, variances)
-        or _bad_triangles(triangles, len(mean), "vertices")
-        or _bad_texture(triangles, uv, uv_triangles)
-        or _bad_values({"mean": mean, "basis": basis, "variances": variances, "uv": uv})
-    )
-    outside = [mark for mark, vertex in marks.items() if not 0 <= vertex < len(mean)]
-    if not fault and (variances < 0).any():
-        fault = f"a variance is {variances.min():.3g}, and none is negative"
-    if not fault and outside:
-        fault = f"landmark {outside[0]} is vertex {marks[outside[0]]} of {len(mean):,}"
-    if not fault and not millimetres > 0:
-        fault = f"its unit is {millimetres} millimetres"
-    if fault:
-        raise InputError(f"{name} is no shape model that can be used: {fault}.")
-    return ShapeModel(mean, basis, variances, triangles, uv, uv_triangles, marks, millimetres, name)
-
-
-def _disagreement(mean: Numbers, basis: Numbers, variances: Numbers) -> str | None:
+def _find_disagreement(
+    mean: Float[np.ndarray, "..."],
+    basis: Float[np.ndarray, "..."],
+    variances: Float[np.ndarray, "..."],
+) -> str | None:
     if mean.ndim != 2 or mean.shape[1] != 3 or not mean.size:
         return f"its mean is {list(mean.shape)} and not [vertices, 3]"
     if basis.ndim != 3 or basis.shape[1:] != mean.shape or not basis.size:
@@ -119,7 +185,7 @@ def _disagreement(mean: Numbers, basis: Numbers, variances: Numbers) -> str | No
     return None
 
 
-def _bad_triangles(triangles: Indices, count: int, what: str) -> str | None:
+def _find_bad_triangle(triangles: Int[np.ndarray, "..."], count: int, what: str) -> str | None:
     if triangles.ndim != 2 or triangles.shape[1] != 3 or not triangles.size:
         return f"its triangles are {list(triangles.shape)} and not [triangles, 3]"
     if triangles.min() < 0 or triangles.max() >= count:
@@ -127,17 +193,21 @@ def _bad_triangles(triangles: Indices, count: int, what: str) -> str | None:
     return None
 
 
-def _bad_texture(triangles: Indices, uv: Numbers | None, own: Indices | None) -> str | None:
+def _find_bad_texture(
+    triangles: Int[np.ndarray, "..."],
+    uv: Float[np.ndarray, "..."] | None,
+    own: Int[np.ndarray, "..."] | None,
+) -> str | None:
     if uv is None and own is None:
         return None
     if uv is None or own is None or uv.ndim != 2 or uv.shape[1] != 2:
         return "its texture coordinates are not [points, 2] with triangles into them"
     if own.shape != triangles.shape:
         return f"it has triangles {list(triangles.shape)}, and {list(own.shape)} for its texture"
-    return _bad_triangles(own, len(uv), "texture coordinates")
+    return _find_bad_triangle(own, len(uv), "texture coordinates")
 
 
-def _bad_values(arrays: Mapping[str, Numbers | None]) -> str | None:
+def _find_bad_value(arrays: Mapping[str, Float[np.ndarray, "..."] | None]) -> str | None:
     for name, array in arrays.items():
         if array is None:
             continue

@@ -1,4 +1,4 @@
-"""Shape models read from files of any of the known layouts, and written to our own."""
+"""Files of shape models: skinnet's own .npz, ICT-FaceKit, Basel Face Models, meshes."""
 
 import zipfile
 from collections.abc import Callable, Mapping
@@ -13,13 +13,13 @@ from skinnet.files import READ_ERRORS, write_atomically
 from skinnet.mesh._mesh_parts import MESH_SUFFIXES
 from skinnet.shape._basel import load_basel_2009, load_basel_2017
 from skinnet.shape._default_model import build_default_model
-from skinnet.shape._ict import NEUTRAL, ict_from_arrays, load_ict_folder
+from skinnet.shape._ict import NEUTRAL, load_ict_folder, read_ict_arrays
+from skinnet.shape._registered_files import load_registered_meshes
 from skinnet.shape.landmarks import read_landmark_vertices
-from skinnet.shape.model import ShapeModel, checked_model
-from skinnet.shape.registered_meshes import load_registered
+from skinnet.shape.model import ShapeModel
 
 VERSION = "1"
-"""Version of our own layout, under the key `skinnet_shape_model`."""
+"""Version of skinnet's own layout, under the key `skinnet_shape_model`."""
 
 _KEY = "skinnet_shape_model"
 
@@ -31,25 +31,55 @@ def load_shape_model(
     align: bool = True,
     millimetres: float | None = None,
 ) -> ShapeModel:
-    """A shape model, by what lies at `path`; None is the embedded procedural face.
+    """Load a shape model from a file or folder of any known layout.
 
-    Read are our own .npz (`save_shape_model`) and ICT-FaceKit's, its folder FaceXModel or the one
-    above, the Basel Face Models of 2009 (.mat) and 2017 and 2019 (.h5), and a folder of registered
-    meshes, of which a model is built; `align` and `millimetres` are for these (`build_shape_model`).
-    `landmarks` is a .json file of names and vertex numbers that takes the place of the model's own.
-    `modes` keeps the first ones. Nothing is unpickled.
+    Known are skinnet's own .npz (`save_shape_model`), ICT-FaceKit (its .npz, its folder FaceXModel
+    or the folder above), the Basel Face Models of 2009 (.mat), 2017 and 2019 (.h5), and a folder of
+    registered meshes, of which `build_shape_model` builds a model. Nothing is unpickled.
 
-    Raises `InputError` for a path where there is no model, and for models that are damaged.
+    Args:
+        path: The file or folder; None for the procedural face, which is part of skinnet.
+        landmarks: A .json file of names and vertex numbers that replaces the model's own landmarks.
+        modes: Keep only that many modes; None for all.
+        align: For a folder of meshes: see `build_shape_model`.
+        millimetres: For a folder of meshes: length of their unit in mm, guessed if None.
+
+    Returns:
+        The model.
+
+    Raises:
+        InputError: If there is no model at `path`, or it is damaged.
+
+    Example:
+        >>> from skinnet.shape import load_shape_model
+        >>> model = load_shape_model(modes=10)
+        >>> model.name, model.basis.shape
+        ('the procedural face', (10, 6117, 3))
     """
-    model = build_default_model() if path is None else _load(Path(path), align, millimetres)
+    model = build_default_model() if path is None else _load_path(Path(path), align, millimetres)
     if landmarks is not None:
-        marks = read_landmark_vertices(Path(landmarks), len(model.mean))
-        model = replace(model, landmarks=marks)
+        vertices = read_landmark_vertices(Path(landmarks), len(model.mean))
+        model = replace(model, landmarks=vertices)
     return model if modes is None else model.truncate(modes)
 
 
 def save_shape_model(path: Path, model: ShapeModel) -> None:
-    """Write a model as .npz, whole or not at all."""
+    """Write a model as .npz. If writing fails, no file is left.
+
+    Args:
+        path: The file, with the suffix .npz.
+        model: The model.
+
+    Raises:
+        InputError: If `path` has another suffix.
+
+    Example:
+        >>> from pathlib import Path
+        >>> from skinnet.shape import load_shape_model, save_shape_model
+        >>> save_shape_model(Path("small.npz"), load_shape_model(modes=2))
+        >>> load_shape_model(Path("small.npz")).basis.shape
+        (2, 6117, 3)
+    """
     path = Path(path)
     if path.suffix != ".npz":
         raise InputError(f"Shape models are written as .npz; got {path}.")
@@ -69,13 +99,13 @@ def save_shape_model(path: Path, model: ShapeModel) -> None:
         np.savez(part, **arrays)
 
 
-def _load(path: Path, align: bool, millimetres: float | None) -> ShapeModel:
+def _load_path(path: Path, align: bool, millimetres: float | None) -> ShapeModel:
     if path.is_dir():
-        return _from_folder(path, align, millimetres)
+        return _load_folder(path, align, millimetres)
     if not path.is_file():
         raise InputError(f"There is no shape model {path}; check the path.")
     loaders: Mapping[str, Callable[[Path], ShapeModel]] = {
-        ".npz": _from_npz,
+        ".npz": _load_npz,
         ".mat": load_basel_2009,
         ".h5": load_basel_2017,
         ".hdf5": load_basel_2017,
@@ -83,32 +113,33 @@ def _load(path: Path, align: bool, millimetres: float | None) -> ShapeModel:
     load = loaders.get(path.suffix.lower())
     if load is None:
         raise InputError(
-            f"{path} is no shape model; give {', '.join(loaders)}, ICT-FaceKit's folder or a "
+            f"{path} is not a shape model; give {', '.join(loaders)}, ICT-FaceKit's folder or a "
             "folder of registered meshes."
         )
     return load(path)
 
 
-def _from_folder(folder: Path, align: bool, millimetres: float | None) -> ShapeModel:
+def _load_folder(folder: Path, align: bool, millimetres: float | None) -> ShapeModel:
     for inner in (folder, folder / "FaceXModel"):
         if (inner / NEUTRAL).is_file():
             return load_ict_folder(inner)
     files = sorted(each for each in folder.iterdir() if each.suffix.lower() in MESH_SUFFIXES)
-    return load_registered(files, None, align, millimetres, str(folder))
+    return load_registered_meshes(files, align, millimetres, str(folder))
 
 
-def _from_npz(path: Path) -> ShapeModel:
+def _load_npz(path: Path) -> ShapeModel:
     try:
         with path.open("rb") as stream, np.load(stream, allow_pickle=False) as file:
             arrays = {name: file[name] for name in file.files if not name.startswith("expr_")}
     except (zipfile.BadZipFile, *READ_ERRORS) as error:
         raise InputError(
-            f"{path} is no .npz of plain arrays, or is cut short ({error}); copy it again."
+            f"{path} is not an .npz of plain arrays, or is cut short ({error}); copy it again."
         ) from error
-    read = _own if _KEY in arrays else ict_from_arrays if "id_modes" in arrays else None
+    read: Callable[[Path, Mapping[str, Any]], ShapeModel] | None
+    read = _read_own if _KEY in arrays else read_ict_arrays if "id_modes" in arrays else None
     if read is None:
         raise InputError(
-            f"{path} holds {', '.join(list(arrays)[:5]) or 'nothing'}, which is no shape model; "
+            f"{path} holds {', '.join(list(arrays)[:5]) or 'nothing'}, which is not a shape model; "
             "give one written by skinnet, or ICT-FaceKit's."
         )
     try:
@@ -116,22 +147,24 @@ def _from_npz(path: Path) -> ShapeModel:
     except InputError:
         raise
     except (LookupError, ValueError, TypeError) as error:
-        raise InputError(f"{path} is no whole shape model ({error!r}); copy it again.") from error
+        raise InputError(
+            f"{path} is not a complete shape model ({error!r}); copy it again."
+        ) from error
 
 
-def _own(path: Path, arrays: Mapping[str, Any]) -> ShapeModel:
+def _read_own(path: Path, arrays: Mapping[str, Any]) -> ShapeModel:
     if str(arrays[_KEY]) != VERSION:
         raise InputError(
             f"{path} has version {arrays[_KEY]}, and this skinnet reads version {VERSION}; "
             "install the skinnet that made it."
         )
     names, vertices = arrays["landmark_names"].tolist(), arrays["landmark_vertices"].tolist()
-    return checked_model(
-        _floats(arrays["mean"]),
-        _floats(arrays["basis"]),
-        _floats(arrays["variances"]),
+    return ShapeModel.from_arrays(
+        _to_floats(arrays["mean"]),
+        _to_floats(arrays["basis"]),
+        _to_floats(arrays["variances"]),
         arrays["triangles"].astype(np.int64),
-        _floats(arrays["uv"]) if "uv" in arrays else None,
+        _to_floats(arrays["uv"]) if "uv" in arrays else None,
         arrays["uv_triangles"].astype(np.int64) if "uv_triangles" in arrays else None,
         dict(zip(names, vertices, strict=True)),
         float(arrays["millimetres"]),
@@ -139,6 +172,6 @@ def _own(path: Path, arrays: Mapping[str, Any]) -> ShapeModel:
     )
 
 
-def _floats(array: np.ndarray) -> np.ndarray:
-    """In float64, but that a basis kept in float32 to save memory stays so."""
+def _to_floats(array: np.ndarray) -> np.ndarray:
+    """Convert to float64; a float32 basis stays float32, to save memory."""
     return array if array.dtype == np.float32 else array.astype(np.float64)

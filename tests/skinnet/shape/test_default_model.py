@@ -8,7 +8,7 @@ from skinnet.errors import InputError
 from skinnet.mesh._orientation import is_inside_out, label_face_components
 from skinnet.mesh._topology import boundary_loops
 from skinnet.shape._default_model import MODES, build_default_model, build_procedural_model
-from skinnet.shape.landmarks import IBUG
+from skinnet.shape._ibug import IBUG
 from skinnet.shape.procedural_head import CHART_EXTENT, IDENTITY_SIZE, compute_head_radius
 
 

@@ -10,10 +10,9 @@ from small_meshes import LANDMARKS, dome, small_model
 from skinnet.errors import InputError
 from skinnet.mesh.mesh import Mesh
 from skinnet.mesh.mesh_file import read_mesh
+from skinnet.shape._ibug import IBUG, name_ibug_point
 from skinnet.shape.landmarks import (
-    IBUG,
     check_landmarks,
-    name_ibug_point,
     read_landmark_vertices,
     read_landmarks,
     write_landmarks,
@@ -95,7 +94,9 @@ def test_picked_points_of_meshlab_are_read(tmp_path: Path) -> None:
 
 
 def test_entities_are_refused(tmp_path: Path) -> None:
-    with pytest.raises(InputError, match=r"bomb\.pp cannot be used: the file declares entities"):
+    with pytest.raises(
+        InputError, match=r"bomb\.pp cannot be used: the file declares XML entities"
+    ):
         read_landmarks(written(tmp_path / "bomb.pp", BOMB))
 
 
@@ -125,16 +126,16 @@ def test_sixty_eight_points_under_other_labels_go_by_their_order(tmp_path: Path)
     [
         ("a.csv", "nose_tip,1,2\n", "a.csv cannot be used: the line 'nose_tip,1,2'"),
         ("a.csv", "nose_tip,1,2,x\n", "a.csv is damaged"),
-        ("a.json", "[1, 2]", "a.json cannot be used: it is no object"),
+        ("a.json", "[1, 2]", "a.json cannot be used: it is not an object"),
         ("a.json", "{", "a.json is damaged"),
-        ("a.json", {"chin": [1, 2]}, "chin is .*and three coordinates are wanted"),
+        ("a.json", {"chin": [1, 2]}, "chin is .*and three coordinates are needed"),
         ("a.json", {"chin": "here"}, "chin is 'here'"),
-        ("a.json", {"chin": [1, 2, "x"]}, "which are no numbers"),
+        ("a.json", {"chin": [1, 2, "x"]}, "which are not numbers"),
         ("a.ljson", {"version": 3, "groups": {}}, "a.ljson is damaged"),
         ("a.ljson", group([[0, 0, 0]], {"leye": [0]}) | {"version": 2}, "leye has 1 points"),
         ("a.ljson", group([[0, 0, 0]], {"car": [0]}) | {"version": 2}, "not those of a face"),
         ("a.pp", "<PickedPoints>", "a.pp is damaged"),
-        ("a.pts", "", "a.pts is no landmark file"),
+        ("a.pts", "", "a.pts is not a landmark file"),
     ],
 )
 def test_damaged_files_are_refused(tmp_path: Path, name: str, content: object, fault: str) -> None:

@@ -17,7 +17,7 @@ from skinnet.mesh._orientation import flip_triangles, is_inside_out
 from skinnet.mesh.mesh import Mesh
 from skinnet.mesh.mesh_file import write_mesh
 from skinnet.shape._default_model import build_default_model
-from skinnet.shape.landmarks import IBUG
+from skinnet.shape._ibug import IBUG
 from skinnet.shape.model import ShapeModel
 from skinnet.shape.model_formats import load_shape_model, save_shape_model
 from skinnet.shape.registered_meshes import build_shape_model
@@ -291,9 +291,9 @@ def test_a_unit_may_be_said_where_it_cannot_be_guessed() -> None:
         ({"uv": np.zeros((5, 2))}, "its triangles go from 0 to 62 of 5 texture coordinates"),
         ({"uv": np.zeros((63, 3))}, "its texture coordinates are not [points, 2]"),
         ({"landmark_vertices": np.array([1, 2, 3, 4, 5, 99])}, "landmark chin is vertex 99 of 63"),
-        ({"landmark_vertices": np.array([1])}, "is no whole shape model"),
+        ({"landmark_vertices": np.array([1])}, "is not a complete shape model"),
         ({"millimetres": np.array(0.0)}, "its unit is 0.0 millimetres"),
-        ({"mean": np.array(["a"])}, "is no whole shape model"),
+        ({"mean": np.array(["a"])}, "is not a complete shape model"),
         ({"skinnet_shape_model": np.array("2")}, "has version 2, and this skinnet reads version 1"),
     ],
 )
@@ -323,18 +323,18 @@ def test_basel_files_whose_arrays_disagree_are_refused(
     }
     for fault, change in faults.items():
         write(tmp_path / name, arrays | change)
-        with pytest.raises(InputError, match=rf"{name} is no shape model .*{fault}"):
+        with pytest.raises(InputError, match=rf"{name} is not a usable shape model: .*{fault}"):
             load_shape_model(tmp_path / name)
     arrays.pop(basis)
     write(tmp_path / name, arrays)
-    with pytest.raises(InputError, match=rf"{name} is no Basel Face Model of 20"):
+    with pytest.raises(InputError, match=rf"{name} is not a Basel Face Model of 20"):
         load_shape_model(tmp_path / name)
 
 
 @pytest.mark.parametrize("name", ["m.npz", "m.mat", "m.h5"])
 def test_files_that_are_no_models_are_refused(tmp_path: Path, name: str) -> None:
     (tmp_path / name).write_bytes(b"PK\x03\x04 something else")
-    with pytest.raises(InputError, match=f"{name} is no "):
+    with pytest.raises(InputError, match=f"{name} is not an? "):
         load_shape_model(tmp_path / name)
 
 
@@ -342,17 +342,17 @@ def test_other_files_and_missing_ones_are_refused(tmp_path: Path) -> None:
     with pytest.raises(InputError, match=r"There is no shape model .*none\.npz"):
         load_shape_model(tmp_path / "none.npz")
     (tmp_path / "m.txt").write_text("")
-    with pytest.raises(InputError, match=r"m\.txt is no shape model; give \.npz, \.mat"):
+    with pytest.raises(InputError, match=r"m\.txt is not a shape model; give \.npz, \.mat"):
         load_shape_model(tmp_path / "m.txt")
     write_npz(tmp_path / "m.npz", {"maps": np.zeros(3)})
-    with pytest.raises(InputError, match=r"m\.npz holds maps, which is no shape model"):
+    with pytest.raises(InputError, match=r"m\.npz holds maps, which is not a shape model"):
         load_shape_model(tmp_path / "m.npz")
 
 
 def test_python_objects_are_never_unpickled(tmp_path: Path) -> None:
     path = tmp_path / "m.npz"
     write_npz(path, own_arrays(path) | {"mean": np.array([{"a": 1}], object)})
-    with pytest.raises(InputError, match=r"m\.npz is no \.npz of plain arrays"):
+    with pytest.raises(InputError, match=r"m\.npz is not an \.npz of plain arrays"):
         load_shape_model(path)
 
 
