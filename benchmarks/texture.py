@@ -118,8 +118,8 @@ def uneven_surface(
     place = np.random.default_rng(seed).uniform(-1, 1, (count, 2)) ** 3
     vertices = np.column_stack([place, np.sqrt(2.5 - (place**2).sum(1))])
     triangles = Delaunay(place).simplices.astype(np.int64)
-    flat = repair_mesh(Mesh(vertices, triangles)).mesh
-    return flat.vertices, flat.triangles
+    repaired = repair_mesh(Mesh(vertices, triangles)).mesh
+    return repaired.vertices, repaired.triangles
 
 
 def against_trimesh(count: int, queries: int) -> Results:

@@ -99,7 +99,7 @@ def repair_mesh(mesh: Mesh, need_texture: bool = False) -> RepairedMesh:
 def guess_length_unit(
     vertices: Float[np.ndarray, "vertices 3"], name: str = "The mesh"
 ) -> LengthUnit:
-    """Guess the unit of a mesh: the one of `UNITS` that gives it the size of a face or head, `FACE`.
+    """Guess in which of `UNITS` a mesh has the size of a face or a head, `FACE`.
 
     Args:
         vertices: Positions of a face or head.

@@ -9,7 +9,7 @@ from trimesh.triangles import closest_point
 from skinnet.mesh.closest_point import TriangleTree
 
 
-def brute(corners: np.ndarray, points: np.ndarray) -> np.ndarray:
+def search_all(corners: np.ndarray, points: np.ndarray) -> np.ndarray:
     pairs = np.repeat(corners, len(points), 0), np.tile(points, (len(corners), 1))
     away = np.linalg.norm(closest_point(*pairs) - pairs[1], axis=1)
     return away.reshape(len(corners), -1).min(0)
@@ -17,16 +17,16 @@ def brute(corners: np.ndarray, points: np.ndarray) -> np.ndarray:
 
 @given(st.integers(0, 10**6), st.sampled_from([1, 3, 4, 5, 40, 130]))
 def test_closest_points_are_those_of_looking_at_every_triangle(seed: int, count: int) -> None:
-    generator = np.random.default_rng(seed)
+    rng = np.random.default_rng(seed)
     # Triangles from a thousandth to ten, long ones and some that are points or lines.
-    vertices = generator.normal(size=(60, 3)) * 10 ** generator.uniform(-3, 1, (60, 1))
-    triangles = generator.integers(0, 60, (count, 3))
-    points = 3 * generator.normal(size=(50, 3))
+    vertices = rng.normal(size=(60, 3)) * 10 ** rng.uniform(-3, 1, (60, 1))
+    triangles = rng.integers(0, 60, (count, 3))
+    points = 3 * rng.normal(size=(50, 3))
     found = TriangleTree(vertices, triangles).query(points)
     corners = vertices[triangles]
     solid = (np.roll(triangles, 1, 1) != triangles).all(1)
     if solid.all():
-        assert np.allclose(found.distance, brute(corners, points), atol=1e-9)
+        assert np.allclose(found.distance, search_all(corners, points), atol=1e-9)
     place = np.einsum("pk,pkx->px", found.barycentric, corners[found.triangle])
     assert np.allclose(np.linalg.norm(place - points, axis=1), found.distance, atol=1e-9)
     assert found.barycentric.min() >= 0 and np.allclose(found.barycentric.sum(1), 1)

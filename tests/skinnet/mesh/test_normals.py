@@ -36,9 +36,3 @@ def test_a_triangle_counts_by_its_area() -> None:
 def test_a_vertex_without_a_triangle_has_none() -> None:
     vertices = np.concatenate([np.eye(3), [[5.0, 5, 5]]])
     assert (compute_vertex_normals(vertices, np.array([[0, 1, 2]]))[3] == 0).all()
-
-
-def test_weld_gives_the_first_vertex_at_each_position() -> None:
-    vertices = np.array([[1, 0, 0], [0, 0, 0], [1, 0, 0], [-0.0, 0, 0], [1, 0, 1e-12]])
-    assert weld(vertices).tolist() == [0, 1, 0, 1, 4]
-    assert weld(np.zeros((0, 3))).tolist() == []

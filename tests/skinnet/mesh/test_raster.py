@@ -14,7 +14,7 @@ def centres(size: int) -> np.ndarray:
     return np.stack([(column + 0.5) / size, 1 - (row + 0.5) / size], -1)
 
 
-def brute(corners: np.ndarray, size: int) -> np.ndarray:
+def search_all(corners: np.ndarray, size: int) -> np.ndarray:
     """The first triangle that holds each texel's centre, by looking at all of them."""
     found = np.full((size, size), -1)
     for number in reversed(range(len(corners))):
@@ -30,11 +30,11 @@ def brute(corners: np.ndarray, size: int) -> np.ndarray:
 
 @given(st.integers(0, 10**6), st.integers(1, 40))
 def test_raster_is_that_of_looking_at_every_triangle(seed: int, size: int) -> None:
-    generator = np.random.default_rng(seed)
-    scale = 10 ** generator.uniform(-2, 0.5, (30, 1, 1))
-    corners = generator.uniform(-0.3, 1.3, (30, 1, 2)) + scale * generator.normal(size=(30, 3, 2))
+    rng = np.random.default_rng(seed)
+    scale = 10 ** rng.uniform(-2, 0.5, (30, 1, 1))
+    corners = rng.uniform(-0.3, 1.3, (30, 1, 2)) + scale * rng.normal(size=(30, 3, 2))
     raster = rasterise(corners, size)
-    assert np.array_equal(raster.triangle, brute(corners, size))
+    assert np.array_equal(raster.triangle, search_all(corners, size))
 
 
 @given(st.integers(0, 10**6))
@@ -60,7 +60,7 @@ def test_neighbours_leave_no_gap_where_edges_run_through_centres(cells: int) -> 
     corners = np.stack([x.ravel(), y.ravel()], 1)[triangles]
     triangle = rasterise(corners, 16).triangle
     assert (triangle >= 0).all()
-    assert np.array_equal(triangle, brute(corners, 16))
+    assert np.array_equal(triangle, search_all(corners, 16))
     again = rasterise(np.roll(corners, 1, 1)[:, ::-1], 16).triangle
     assert np.array_equal(again, triangle)
 

@@ -1,4 +1,4 @@
-"""What is wrong with a mesh is repaired and said, or refused in words."""
+"""What is wrong with a mesh is repaired with a note, or refused in a sentence."""
 
 from dataclasses import replace
 from pathlib import Path
@@ -6,7 +6,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 import trimesh
-from small_meshes import dome
+from small_meshes import dome, moebius_strip
 
 from skinnet.errors import InputError
 from skinnet.mesh._orientation import is_inside_out
@@ -15,7 +15,7 @@ from skinnet.mesh.mesh_file import read_mesh
 from skinnet.mesh.repair import guess_length_unit, repair_mesh
 
 
-def joined(one: Mesh, *others: Mesh) -> Mesh:
+def join_meshes(one: Mesh, *others: Mesh) -> Mesh:
     """Meshes side by side in one, without textures."""
     meshes = (one, *others)
     starts = np.cumsum([0] + [len(mesh.vertices) for mesh in meshes[:-1]])
@@ -26,11 +26,11 @@ def joined(one: Mesh, *others: Mesh) -> Mesh:
     )
 
 
-def moved(mesh: Mesh, by: float, scale: float = 1.0) -> Mesh:
+def move(mesh: Mesh, by: float, scale: float = 1.0) -> Mesh:
     return replace(mesh, vertices=mesh.vertices * scale + by)
 
 
-def with_vertices(mesh: Mesh, **at: float) -> Mesh:
+def replace_x(mesh: Mesh, **at: float) -> Mesh:
     vertices = mesh.vertices.copy()
     for name, value in at.items():
         vertices[int(name[1:]), 0] = value
@@ -59,8 +59,8 @@ def test_faces_out_of_range_are_refused() -> None:
         repair_mesh(replace(mesh, uv=mesh.uv[:-1]))
 
 
-def test_a_few_vertices_that_are_nan_are_left_out_with_their_faces() -> None:
-    mesh = with_vertices(dome(), v0=np.nan, v3=np.inf)
+def test_a_few_vertices_that_are_nan_are_removed_with_their_faces() -> None:
+    mesh = replace_x(dome(), v0=np.nan, v3=np.inf)
     checked, notes = repair_mesh(mesh)
     assert notes == ["dome: 2 vertices that are NaN or infinite were removed with their faces."]
     assert np.isfinite(checked.vertices).all() and len(checked.vertices) == 61
@@ -68,12 +68,12 @@ def test_a_few_vertices_that_are_nan_are_left_out_with_their_faces() -> None:
 
 
 def test_many_vertices_that_are_nan_are_refused() -> None:
-    mesh = with_vertices(dome(), **{f"v{i}": np.nan for i in range(20)})
+    mesh = replace_x(dome(), **{f"v{i}": np.nan for i in range(20)})
     with pytest.raises(InputError, match="dome is damaged: 20 of its 63 vertices are NaN"):
         repair_mesh(mesh)
 
 
-def test_faces_without_area_and_repeated_ones_are_left_out() -> None:
+def test_faces_without_area_and_repeated_ones_are_removed() -> None:
     mesh = dome()
     extra = np.array([[0, 0, 1], [5, 5, 5], [12, 11, 4]])
     triangles = np.concatenate([mesh.triangles, extra])
@@ -89,7 +89,7 @@ def test_faces_without_area_and_repeated_ones_are_left_out() -> None:
         repair_mesh(Mesh(mesh.vertices, flat, name="dome"))
 
 
-def test_a_fin_at_an_edge_is_left_out() -> None:
+def test_a_fin_at_an_edge_is_removed() -> None:
     mesh = dome()
     tip = mesh.vertices[[24]] + [1.0, 1.0, 5.0]
     fin = np.array([[24, 25, len(mesh.vertices)]])
@@ -104,9 +104,9 @@ def test_a_fin_at_an_edge_is_left_out() -> None:
     assert np.array_equal(checked.vertices, mesh.vertices)
 
 
-def test_small_components_are_left_out_and_large_ones_stay() -> None:
-    crumb, other = moved(dome(), 500.0, 0.1), moved(dome(), 900.0, 0.5)
-    checked, notes = repair_mesh(joined(dome(), crumb, other))
+def test_small_components_are_removed_and_large_ones_stay() -> None:
+    crumb, other = move(dome(), 500.0, 0.1), move(dome(), 900.0, 0.5)
+    checked, notes = repair_mesh(join_meshes(dome(), crumb, other))
     assert notes == ["dome: 1 of 3 components were removed, 0.79% of the area."]
     assert len(checked.vertices) == 126
 
@@ -119,10 +119,10 @@ def test_a_mesh_in_pieces_is_refused() -> None:
 
 
 @pytest.mark.parametrize("share", [0.3, 0.7, 1.0])
-def test_turned_faces_are_turned_back(share: float) -> None:
+def test_flipped_faces_are_flipped_back(share: float) -> None:
     mesh = dome()
-    turn = np.random.default_rng(0).random(len(mesh.triangles)) < share
-    triangles = np.where(turn[:, None], mesh.triangles[:, ::-1], mesh.triangles)
+    flipped = np.random.default_rng(0).random(len(mesh.triangles)) < share
+    triangles = np.where(flipped[:, None], mesh.triangles[:, ::-1], mesh.triangles)
     checked, notes = repair_mesh(replace(mesh, triangles=triangles, uv_triangles=triangles))
     assert len(notes) == (2 if share == 0.7 else 1)
     assert not is_inside_out(checked.vertices, checked.triangles)
@@ -132,20 +132,11 @@ def test_turned_faces_are_turned_back(share: float) -> None:
 
 
 def test_a_strip_that_cannot_be_oriented_is_left_as_it_is() -> None:
-    angle = np.linspace(0, 2 * np.pi, 24, endpoint=False)
-    across = np.stack([np.cos(angle / 2) * np.cos(angle), np.cos(angle / 2) * np.sin(angle)], 1)
-    side = np.concatenate([across, np.sin(angle / 2)[:, None]], 1)
-    ring = np.stack([np.cos(angle), np.sin(angle), 0 * angle], 1)
-    vertices = np.stack([ring - side / 3, ring + side / 3], 1).reshape(-1, 3)
-    a = 2 * np.arange(24)
-    b, c, d = a + 1, (a + 2) % 48, (a + 3) % 48
-    c[-1], d[-1] = 1, 0
-    triangles = np.concatenate([np.stack([a, b, c], 1), np.stack([b, d, c], 1)])
-    checked, _ = repair_mesh(Mesh(vertices, triangles))
+    checked, _ = repair_mesh(Mesh(*moebius_strip()))
     assert len(checked.triangles) == 48
 
 
-def test_a_texture_is_needed_only_where_it_is_said_to_be() -> None:
+def test_a_texture_is_needed_only_on_request() -> None:
     mesh = dome()
     bare = Mesh(mesh.vertices, mesh.triangles, name="scan.ply")
     assert repair_mesh(bare).notes == []

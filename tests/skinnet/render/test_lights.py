@@ -25,10 +25,10 @@ def test_harmonics_are_orthonormal() -> None:
 
 @given(st.integers(0, 10**6))
 def test_irradiance_is_the_cosine_weighted_integral_over_pi(seed: int) -> None:
-    generator = np.random.default_rng(seed)
-    coefficients = generator.normal(size=(9, 3))
+    rng = np.random.default_rng(seed)
+    coefficients = rng.normal(size=(9, 3))
     coefficients[0] += 6
-    normals = normalise(generator.normal(size=(4, 3)))
+    normals = normalise(rng.normal(size=(4, 3)))
     directions = sphere(20_000)
     radiance = evaluate_harmonics(directions) @ coefficients
     cosine = (normals @ directions.T).clip(0)

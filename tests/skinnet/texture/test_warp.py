@@ -6,7 +6,6 @@ from scipy.spatial import Delaunay
 
 from benchmarks.texture import against_skimage
 from skinnet.errors import InputError
-from skinnet.mesh.sampling import sample_bilinear
 from skinnet.texture.warp import TextureSpace, warp_texture
 
 SQUARE = np.array([[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0]])
@@ -84,19 +83,6 @@ def test_values_of_vertices_and_corners_are_interpolated() -> None:
     assert np.allclose(image[space.mask], expected[space.mask], atol=1e-12)
     numbers = np.repeat(np.arange(len(space.triangles)), 3).reshape(-1, 3, 1).astype(np.float64)
     assert np.allclose(space.interpolate(numbers)[space.mask, 0], space.triangle[space.mask])
-
-
-def test_bilinear_hits_pixels_and_goes_on_beyond_the_edge() -> None:
-    picture = np.arange(12, dtype=np.float64).reshape(3, 4, 1)
-    row, column = np.mgrid[:3, :4]
-    centres = np.stack([(column + 0.5) / 4, 1 - (row + 0.5) / 3], -1).reshape(-1, 2)
-    assert np.allclose(sample_bilinear(picture, centres)[:, 0], np.arange(12))
-    assert sample_bilinear(picture, np.array([[-2.0, 3.0], [5.0, -1.0]])).ravel().tolist() == [
-        0,
-        11,
-    ]
-    assert sample_bilinear(picture[:1, :1], np.array([[0.3, 0.9]])).item() == 0
-    assert sample_bilinear(picture[:, :1], np.array([[0.3, 0.0]])).item() == 8
 
 
 @pytest.mark.parametrize(

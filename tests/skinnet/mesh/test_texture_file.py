@@ -1,0 +1,62 @@
+"""Texture files: pixels as stored, faults in sentences."""
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+from PIL import Image
+
+from skinnet.errors import InputError
+from skinnet.mesh import _texture_file
+from skinnet.mesh._texture_file import find_texture_beside, read_texture
+
+
+def save(path: Path, size: tuple[int, int] = (4, 3)) -> Path:
+    Image.new("RGB", size, (200, 120, 90)).save(path)
+    return path
+
+
+def test_rows_and_columns_are_as_stored_whatever_the_exif_says(tmp_path: Path) -> None:
+    image, exif = Image.new("RGB", (20, 10), (200, 0, 0)), Image.Exif()
+    exif[0x0112] = 6
+    image.save(tmp_path / "turned.jpg", exif=exif)
+    assert read_texture(tmp_path / "turned.jpg").shape == (10, 20, 3)
+
+
+def test_transparency_is_composited_on_white(tmp_path: Path) -> None:
+    Image.new("RGBA", (2, 2), (0, 0, 0, 0)).save(tmp_path / "clear.png")
+    assert (read_texture(tmp_path / "clear.png") == 255).all()
+
+
+def test_pixels_come_back(tmp_path: Path) -> None:
+    pixels = np.random.default_rng(0).integers(0, 256, (5, 7, 3), np.uint8)
+    Image.fromarray(pixels).save(tmp_path / "noise.png")
+    assert np.array_equal(read_texture(tmp_path / "noise.png"), pixels)
+
+
+def test_faults_are_named(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    with pytest.raises(InputError, match=r"There is no texture .*none\.png"):
+        read_texture(tmp_path / "none.png")
+    (tmp_path / "text.png").write_text("not a picture")
+    with pytest.raises(InputError, match=r"text\.png is not a picture"):
+        read_texture(tmp_path / "text.png")
+    path = save(tmp_path / "cut.png", (64, 64))
+    whole = path.read_bytes()
+    path.write_bytes(whole[:80])
+    with pytest.raises(InputError, match=r"cut\.png is (damaged|not a picture)"):
+        read_texture(path)
+    path.write_bytes(whole)
+    monkeypatch.setattr(_texture_file, "MAX_PIXELS", 100)
+    with pytest.raises(InputError, match="64 x 64 pixels, more than 100"):
+        read_texture(path)
+
+
+def test_the_picture_beside_a_mesh_has_its_name_or_is_the_only_one(tmp_path: Path) -> None:
+    mesh = tmp_path / "head.obj"
+    assert find_texture_beside(mesh) is None
+    albedo = save(tmp_path / "albedo.png")
+    assert find_texture_beside(mesh) == albedo
+    save(tmp_path / "normals.png")
+    assert find_texture_beside(mesh) is None
+    named = save(tmp_path / "head.png")
+    assert find_texture_beside(mesh) == named
