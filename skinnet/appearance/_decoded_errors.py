@@ -5,10 +5,10 @@ from collections.abc import Callable
 import numpy as np
 from jaxtyping import Bool, Float, Float32
 
-from skinnet.appearance._feature_blocks import FeatureBlocks, block_width
+from skinnet.appearance._feature_blocks import FeatureBlocks, compute_block_width
 
 Decode = Callable[
-    [Float32[np.ndarray, "faces channels columns"]], Float32[np.ndarray, "faces 3 columns"]
+    [Float32[np.ndarray, "faces channels texels"]], Float32[np.ndarray, "faces 3 texels"]
 ]
 
 
@@ -24,7 +24,7 @@ def compute_decoded_errors(
         mean = colours.mean(0)
         truth = _center(colours, mean)
         squares += (truth**2).sum(1)
-        step = block_width(block.shape[2], channels)
+        step = compute_block_width(block.shape[2], channels)
         for start in range(0, len(weights), step):
             part = slice(start, start + step)
             mixed = _center(decode(np.tensordot(single[part], block, 1)), mean)
@@ -33,7 +33,7 @@ def compute_decoded_errors(
 
 
 def _center(
-    colours: Float32[np.ndarray, "faces 3 columns"], mean: Float32[np.ndarray, "3 columns"]
+    colours: Float32[np.ndarray, "faces 3 texels"], mean: Float32[np.ndarray, "3 texels"]
 ) -> Float[np.ndarray, "faces values"]:
     # Small distances are differences of large squares: less is lost about the mean, in float64.
     return np.asarray((colours - mean).reshape(len(colours), -1), np.float64)

@@ -1,4 +1,4 @@
-"""Features of many subjects, read a block of texels at a time."""
+"""Features of many subjects, read one block of texels at a time."""
 
 from collections.abc import Iterator
 from typing import Protocol, runtime_checkable
@@ -9,25 +9,25 @@ from jaxtyping import Float, Float32
 from skinnet.errors import InputError
 
 BLOCK_BYTES = 2**27
-"""Size of a block of float32 features of all subjects; a pass holds a few times that."""
+"""Size of a block of float32 features of all subjects; a pass holds a few blocks."""
 
 
 @runtime_checkable
 class FeatureBlocks(Protocol):
-    """Features of all subjects that are read a block of texels at a time, as often as needed.
+    """Features of all subjects, read one block of texels at a time, as often as needed.
 
-    `shape` is subjects, channels (one for each kind of feature), texels.
+    `shape` is [subjects, channels, texels], with one channel for each kind of feature.
     """
 
     shape: tuple[int, int, int]
 
-    def __iter__(self) -> Iterator[Float32[np.ndarray, "subjects channels columns"]]: ...
+    def __iter__(self) -> Iterator[Float32[np.ndarray, "subjects channels texels"]]: ...
 
 
 class ArrayBlocks:
-    """A matrix [subjects, features], which may be a memmap, read `width` texels at a time.
+    """A matrix [subjects, features], perhaps a memmap, read `width` texels at a time.
 
-    `features` is `channels` runs of as many texels each.
+    A row of features is `channels` runs of equal length.
     """
 
     def __init__(
@@ -41,14 +41,14 @@ class ArrayBlocks:
             raise InputError(f"{features} features cannot be split into {channels} equal blocks.")
         self.rows = rows
         self.shape = (subjects, channels, features // channels)
-        self.width = width or block_width(subjects, channels)
+        self.width = width or compute_block_width(subjects, channels)
 
-    def __iter__(self) -> Iterator[Float32[np.ndarray, "subjects channels columns"]]:
+    def __iter__(self) -> Iterator[Float32[np.ndarray, "subjects channels texels"]]:
         folded = self.rows.reshape(self.shape)
         for start in range(0, self.shape[2], self.width):
             yield np.array(folded[:, :, start : start + self.width], np.float32)
 
 
-def block_width(subjects: int, channels: int) -> int:
-    """Texels of a block of `BLOCK_BYTES`."""
+def compute_block_width(subjects: int, channels: int) -> int:
+    """Compute how many texels a block of `BLOCK_BYTES` holds."""
     return max(1, BLOCK_BYTES // (4 * subjects * channels))

@@ -57,7 +57,7 @@ class AppearanceModel(nn.Module, ABC):
         cls: type[Model],
         stack: SubjectStack,
         components: int | None = None,
-        mask: Bool[np.ndarray, "rows columns"] | None = None,
+        mask: Bool[np.ndarray, "size size"] | None = None,
         scales: Float[np.ndarray, "channels"] | None = None,
     ) -> Model:
         """Principal components of a stack of subjects, in two passes over it.
@@ -84,9 +84,7 @@ class AppearanceModel(nn.Module, ABC):
 
     @classmethod
     @abstractmethod
-    def read_blocks(
-        cls, stack: SubjectStack, mask: Bool[np.ndarray, "rows columns"]
-    ) -> FeatureBlocks:
+    def read_blocks(cls, stack: SubjectStack, mask: Bool[np.ndarray, "size size"]) -> FeatureBlocks:
         """The features of a stack that the model is made of, inside a mask."""
 
     @classmethod

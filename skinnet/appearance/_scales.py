@@ -23,7 +23,7 @@ def equal_variance(
 
 
 def equal_effect(
-    stack: SubjectStack, mask: Bool[np.ndarray, "rows columns"] | None = None
+    stack: SubjectStack, mask: Bool[np.ndarray, "size size"] | None = None
 ) -> Float[np.ndarray, "5"]:
     """Scales that make a unit of every feature change linear RGB by one, at the mean colour.
 

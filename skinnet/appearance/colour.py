@@ -12,20 +12,37 @@ from skinnet.physics.camera import SpectralCamera
 from skinnet.physics.lookup import SkinLookup
 from skinnet.physics.reflectance import SkinReflectance
 
-NODES = (256, 256)
-"""Nodes of the table in f_mel and f_blood: those of the inverse rendering."""
+_NODES = (256, 256)
+"""Nodes of the look-up table in f_mel and f_blood, as many as inverse rendering has."""
 
 CHANNELS = ("f_blood", "f_mel", "offset_r", "offset_g", "offset_b")
-"""Order of the features of a texel (equation 9)."""
+"""Order of the features of a texel (Equation 9 of Alotaibi & Smith 2017)."""
 
 
 class SkinColour(nn.Module):
-    """Features of texels to linear RGB: A = i(f_mel, f_blood, e, S) + delta (equation 11).
+    """Decodes the features of texels to linear RGB: A = i(f_mel, f_blood, e, S) + delta.
 
-    `matrix` [33, 3] takes a spectrum to linear RGB under the light and the camera, and
-    `calibration` [3, 3] multiplies that RGB from the left (section 4.3); both are fixed, so skin is
-    a table of colours. By default the light is D65 and the camera the mean of those measured.
-    `optics` is a preset's name. `light` and `camera` are names for the record.
+    Light, camera and calibration are fixed, so the colours of skin are a look-up table.
+
+    Args:
+        matrix: takes a reflectance spectrum [33], 400 to 720 nm, to linear RGB [3] under the light
+            and the camera; None: daylight D65 and the mean of the measured cameras.
+        calibration: colour transform that multiplies this RGB from the left (section 4.3); None:
+            the identity.
+        optics: name of a `SkinOptics` preset.
+        nodes: nodes of the look-up table in f_mel and f_blood.
+        light: name of the light, kept in files.
+        camera: name of the camera, kept in files.
+
+    Source:
+        Equation 11 of Alotaibi & Smith 2017.
+
+    Example:
+        >>> import torch
+        >>> colour = SkinColour(nodes=(32, 32))
+        >>> features = torch.tensor([0.05, 0.03, 0.0, 0.0, 0.0])[:, None]
+        >>> [round(channel, 2) for channel in colour(features)[:, 0].tolist()]
+        [0.59, 0.37, 0.29]
     """
 
     table: Tensor
@@ -36,12 +53,14 @@ class SkinColour(nn.Module):
         matrix: Float[np.ndarray, "wavelength 3"] | None = None,
         calibration: Float[np.ndarray, "3 3"] | None = None,
         optics: str = "calibrated",
-        nodes: tuple[int, int] = NODES,
+        nodes: tuple[int, int] = _NODES,
         light: str = "D65",
         camera: str = "mean",
     ):
         super().__init__()
-        self.matrix = _standard() if matrix is None else np.asarray(matrix, np.float64)
+        self.matrix = (
+            _compute_standard_matrix() if matrix is None else np.asarray(matrix, np.float64)
+        )
         self.calibration = np.eye(3) if calibration is None else np.asarray(calibration, np.float64)
         self.optics, self.light, self.camera = optics, light, camera
         self.lookup = SkinLookup(SkinReflectance(optics, dtype=torch.float64), nodes)
@@ -52,17 +71,30 @@ class SkinColour(nn.Module):
     def forward(
         self, features: Float[Tensor, "*batch 5 texels"]
     ) -> Float[Tensor, "*batch 3 texels"]:
-        """Linear RGB of features in the order of `CHANNELS`.
+        """Decode features in the order of `CHANNELS` (Equation 11 of Alotaibi & Smith 2017).
 
-        A fraction outside [0, 1] counts as the nearer of the two, and its gradient is zero;
-        `outside` says for how many texels. Offsets are added as they are.
+        A fraction outside [0, 1] is clamped, and its gradient is zero. Offsets are added unchanged.
+
+        Args:
+            features: volume fractions of blood and melanosomes, then the linear RGB offset.
+
+        Returns:
+            Linear RGB.
         """
         return self.skin(features[..., 1, :], features[..., 0, :]) + features[..., 2:, :]
 
     def skin(
         self, f_mel: Float[Tensor, "*batch texels"], f_blood: Float[Tensor, "*batch texels"]
     ) -> Float[Tensor, "*batch 3 texels"]:
-        """Linear RGB of skin alone."""
+        """Decode pigments alone, without an offset.
+
+        Args:
+            f_mel: volume fraction of melanosomes; clamped to [0, 1].
+            f_blood: volume fraction of blood; clamped to [0, 1].
+
+        Returns:
+            Linear RGB of skin.
+        """
         texels = f_mel.shape[-1]
         flat = [fraction.clamp(0, 1).reshape(-1, 1, texels) for fraction in (f_mel, f_blood)]
         table = self.table.to(f_mel).expand(len(flat[0]), -1, -1, -1)
@@ -72,12 +104,12 @@ class SkinColour(nn.Module):
     def decode(
         self, features: Float32[np.ndarray, "*batch 5 texels"]
     ) -> Float32[np.ndarray, "*batch 3 texels"]:
-        """`forward` for arrays."""
+        """Decode features that are arrays; see `forward`."""
         decoded: Float32[np.ndarray, "*batch 3 texels"] = self(torch.from_numpy(features)).numpy()
         return decoded
 
     def to_record(self) -> dict[str, Any]:
-        """What JSON can hold of it, for `from_record`."""
+        """Describe the light, camera and calibration in JSON's types, for `from_record`."""
         return {
             "optics": self.optics,
             "light": self.light,
@@ -89,7 +121,13 @@ class SkinColour(nn.Module):
 
     @classmethod
     def from_record(cls, record: Mapping[str, Any]) -> "SkinColour":
-        """The one that was recorded. Raises `KeyError`, `TypeError` or `ValueError` for others."""
+        """Rebuild what `to_record` described.
+
+        Raises:
+            KeyError: if an entry is missing.
+            TypeError: if an entry has another type.
+            ValueError: if an entry has another shape or value.
+        """
         matrix, calibration = (np.array(record[name], float) for name in ("matrix", "calibration"))
         if matrix.shape != (33, 3) or calibration.shape != (3, 3):
             raise ValueError(f"matrix {matrix.shape} and calibration {calibration.shape}")
@@ -97,14 +135,14 @@ class SkinColour(nn.Module):
         names = (str(record[name]) for name in ("light", "camera"))
         return cls(matrix, calibration, str(record["optics"]), (mel, blood), *names)
 
+    @staticmethod
+    def share_outside(features: Float[np.ndarray, "*batch 5 texels"]) -> float:
+        """Compute the share of texels that have a fraction outside [0, 1]."""
+        fractions = features[..., :2, :]
+        return float(((fractions < 0) | (fractions > 1)).any(-2).mean())
 
-def outside(features: Float[np.ndarray, "*batch 5 texels"]) -> float:
-    """Share of texels with a fraction outside [0, 1]."""
-    fractions = features[..., :2, :]
-    return float(((fractions < 0) | (fractions > 1)).any(-2).mean())
 
-
-def _standard() -> Float[np.ndarray, "wavelength 3"]:
+def _compute_standard_matrix() -> Float[np.ndarray, "wavelength 3"]:
     camera = SpectralCamera(dtype=torch.float64)
     matrix: Float[np.ndarray, "wavelength 3"] = camera.matrix(camera.standard()).numpy()
     return matrix

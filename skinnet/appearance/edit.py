@@ -1,4 +1,4 @@
-"""Changes to the pigments of a skin texture (Alotaibi & Smith 2017, Figure 6)."""
+"""Edits of the pigments of a skin texture (section 6 of Alotaibi & Smith 2017)."""
 
 from dataclasses import dataclass, replace
 
@@ -8,18 +8,28 @@ from jaxtyping import Float, Float32
 from skinnet.appearance.skin_texture import SkinTexture
 from skinnet.errors import InputError
 
-LARGEST = 10.0
-"""Largest factor."""
+_LARGEST_SCALE = 10.0
 
 
 @dataclass(frozen=True)
 class PigmentEdit:
-    """What happens to a map of volume fractions: f -> scale f + add, or to one painted value.
+    """An edit of a map of volume fractions: f -> scale f + add, or one painted value.
 
     Args:
         scale: factor from 0 to 10.
         add: volume fraction that is added, in [-1, 1].
-        paint: volume fraction in [0, 1] that takes the map's place; null leaves it.
+        paint: volume fraction in [0, 1] that replaces the map; None: none does.
+
+    Raises:
+        InputError: if a value lies outside its range.
+
+    Source:
+        Section 6 and Figure 6 of Alotaibi & Smith 2017.
+
+    Example:
+        >>> tan = PigmentEdit(scale=1.5)
+        >>> [round(float(f), 3) for f in tan(np.array([0.02, 0.9], np.float32))]
+        [0.03, 1.0]
     """
 
     scale: float = 1.0
@@ -27,9 +37,9 @@ class PigmentEdit:
     paint: float | None = None
 
     def __post_init__(self) -> None:
-        if not 0 <= self.scale <= LARGEST:
+        if not 0 <= self.scale <= _LARGEST_SCALE:
             raise InputError(
-                f"scale is a factor from 0 to {LARGEST:g}; got {self.scale}. Was it given in "
+                f"scale is a factor from 0 to {_LARGEST_SCALE:g}; got {self.scale}. Was it given in "
                 "percent?"
             )
         if not -1 <= self.add <= 1:
@@ -42,7 +52,7 @@ class PigmentEdit:
             )
 
     def __call__(self, fraction: Float32[np.ndarray, "*map"]) -> Float32[np.ndarray, "*map"]:
-        """The changed map, kept in [0, 1]."""
+        """Apply the edit to a map and clip the result to [0, 1]."""
         if self.paint is not None:
             return np.full_like(fraction, self.paint)
         return np.asarray((self.scale * fraction + self.add).clip(0, 1), np.float32)
@@ -54,10 +64,29 @@ def edit_texture(
     hemoglobin: PigmentEdit,
     mask: Float[np.ndarray, "size size"] | None = None,
 ) -> SkinTexture:
-    """A texture with changed pigments; what is not skin, its offset, stays.
+    """Edit the pigments of a texture; its offset, which is not skin, stays the same.
 
-    `mask` in [0, 1] says how much of the change each texel takes. Raises `InputError` for a mask of
-    another size.
+    Args:
+        texture: maps to edit; they are not changed in place.
+        melanin: edit of f_mel.
+        hemoglobin: edit of f_blood.
+        mask: weight of the edit at each texel, in [0, 1]; None: 1 everywhere.
+
+    Returns:
+        The edited texture.
+
+    Raises:
+        InputError: if the mask has another size than the maps.
+
+    Source:
+        Section 6 and Figure 6 of Alotaibi & Smith 2017.
+
+    Example:
+        >>> level, known = np.full((2, 2), 0.04, np.float32), np.ones((2, 2), bool)
+        >>> face = SkinTexture(level, level, np.zeros((2, 2, 3), np.float32), known)
+        >>> flushed = edit_texture(face, PigmentEdit(), PigmentEdit(scale=2.0))
+        >>> round(float(flushed.f_blood[0, 0]), 3), round(float(flushed.f_mel[0, 0]), 3)
+        (0.08, 0.04)
     """
     weight = np.ones_like(texture.f_mel) if mask is None else mask.astype(np.float32)
     if weight.shape != texture.f_mel.shape:
@@ -66,8 +95,8 @@ def edit_texture(
             f"{len(texture.mask)} x {len(texture.mask)}; draw it at their size."
         )
     maps = {
-        name: (1 - weight) * before + weight * edit(before)
-        for name, before, edit in (
+        name: (1 - weight) * fraction + weight * edit(fraction)
+        for name, fraction, edit in (
             ("f_mel", texture.f_mel, melanin),
             ("f_blood", texture.f_blood, hemoglobin),
         )

@@ -12,7 +12,7 @@ from skinnet.appearance._feature_blocks import FeatureBlocks
 from skinnet.appearance._mixtures import Errors
 from skinnet.appearance._model import AppearanceModel
 from skinnet.appearance._scales import equal_variance
-from skinnet.appearance.colour import CHANNELS, outside
+from skinnet.appearance.colour import CHANNELS, SkinColour
 from skinnet.appearance.skin_texture import SkinTexture
 from skinnet.appearance.stack import SubjectStack
 
@@ -29,9 +29,7 @@ class HybridModel(AppearanceModel):
     """
 
     @classmethod
-    def read_blocks(
-        cls, stack: SubjectStack, mask: Bool[np.ndarray, "rows columns"]
-    ) -> FeatureBlocks:
+    def read_blocks(cls, stack: SubjectStack, mask: Bool[np.ndarray, "size size"]) -> FeatureBlocks:
         return stack.read_blocks(mask)
 
     @classmethod
@@ -71,4 +69,4 @@ class HybridModel(AppearanceModel):
     def clamped(self, betas: Float[np.ndarray, "samples components"]) -> float:
         """Share of texels, over these faces, with a fraction outside [0, 1]."""
         faces = (self.features(torch.from_numpy(beta).to(self.mean)) for beta in betas)
-        return float(np.mean([outside(face.numpy(force=True)) for face in faces]))
+        return float(np.mean([SkinColour.share_outside(face.numpy(force=True)) for face in faces]))

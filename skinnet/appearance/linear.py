@@ -22,7 +22,7 @@ class _ColourBlocks:
         self.features, self.colour = features, colour
         self.shape = (features.shape[0], 3, features.shape[2])
 
-    def __iter__(self) -> Iterator[Float32[np.ndarray, "subjects 3 columns"]]:
+    def __iter__(self) -> Iterator[Float32[np.ndarray, "subjects 3 texels"]]:
         return map(self.colour.decode, self.features)
 
 
@@ -35,9 +35,7 @@ class LinearModel(AppearanceModel):
     """
 
     @classmethod
-    def read_blocks(
-        cls, stack: SubjectStack, mask: Bool[np.ndarray, "rows columns"]
-    ) -> FeatureBlocks:
+    def read_blocks(cls, stack: SubjectStack, mask: Bool[np.ndarray, "size size"]) -> FeatureBlocks:
         return _ColourBlocks(stack.read_blocks(mask), stack.colour)
 
     @classmethod

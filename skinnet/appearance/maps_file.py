@@ -8,20 +8,46 @@ from skinnet.appearance import _model_arrays
 from skinnet.appearance.colour import SkinColour
 from skinnet.appearance.skin_texture import SkinTexture
 
-KIND = "SkinTexture"
+_KIND = "SkinTexture"
 _ARRAYS = ("f_mel", "f_blood", "offset", "mask")
 
 
 def save_maps(path: Path, texture: SkinTexture, colour: SkinColour) -> None:
-    """Write maps and the colours under which they were found, whole or not at all."""
+    """Write one person's maps to a .npz file, all of it or nothing.
+
+    Args:
+        path: NAME_maps.npz.
+        texture: the maps.
+        colour: light, camera and calibration under which they were inverted.
+
+    Raises:
+        InputError: if the path does not end in .npz or cannot be written.
+
+    Example:
+        >>> import tempfile
+        >>> level, known = np.full((2, 2), 0.04, np.float32), np.ones((2, 2), bool)
+        >>> face = SkinTexture(level, level, np.zeros((2, 2, 3), np.float32), known)
+        >>> with tempfile.TemporaryDirectory() as folder:
+        ...     save_maps(Path(folder, "a_maps.npz"), face, SkinColour(nodes=(4, 4)))
+        ...     texture, colour = load_maps(Path(folder, "a_maps.npz"))
+        >>> bool((texture.f_mel == level).all()), colour.light
+        (True, 'D65')
+    """
     arrays = {name: getattr(texture, name) for name in _ARRAYS}
     header = {"name": texture.name, "colour": colour.to_record()}
-    _model_arrays.write_arrays(path, KIND, header, arrays)
+    _model_arrays.write_arrays(path, _KIND, header, arrays)
 
 
 def load_maps(path: Path) -> tuple[SkinTexture, SkinColour]:
-    """Read maps. Raises `InputError` for a file that is missing, damaged or something else."""
-    header, arrays = _model_arrays.read_arrays(path, KIND, _ARRAYS)
+    """Read one person's maps that `save_maps` wrote; see there for an example.
+
+    Returns:
+        The maps, and the light, camera and calibration under which they were inverted.
+
+    Raises:
+        InputError: if the file is missing, damaged or holds something else.
+    """
+    header, arrays = _model_arrays.read_arrays(path, _KIND, _ARRAYS)
     try:
         colour = SkinColour.from_record(header["colour"])
         f_mel, f_blood, offset = (np.asarray(arrays[name], np.float32) for name in _ARRAYS[:3])

@@ -13,10 +13,24 @@ from skinnet.errors import InputError
 class SkinTexture:
     """One person's skin over a square texture space; row 0 is the top.
 
-    `f_mel` and `f_blood` [n, n] are volume fractions in [0, 1], `offset` [n, n, 3] linear RGB that
-    skin does not explain (equation 9), and `mask` [n, n] says which texels are known; what the
-    others hold does not count. Raises `InputError`, with the texture's `name`, for a known texel
-    that is not finite or whose fraction lies outside [0, 1].
+    Args:
+        f_mel: volume fraction of melanosomes, in [0, 1].
+        f_blood: volume fraction of blood, in [0, 1].
+        offset: linear RGB that the pigments do not explain.
+        mask: which texels are known; the values of the others are ignored.
+        name: stands in error messages.
+
+    Raises:
+        InputError: if a known texel is not finite or its fraction lies outside [0, 1].
+
+    Source:
+        Section 4.4 and Equation 9 of Alotaibi & Smith 2017.
+
+    Example:
+        >>> level, known = np.full((2, 2), 0.05, np.float32), np.ones((2, 2), bool)
+        >>> texture = SkinTexture(level, level, np.zeros((2, 2, 3), np.float32), known)
+        >>> texture.features().shape
+        (5, 4)
     """
 
     f_mel: Float32[np.ndarray, "size size"]
@@ -37,12 +51,23 @@ class SkinTexture:
                 )
 
     def features(self) -> Float32[np.ndarray, "5 texels"]:
-        """The features of every texel in the order of `CHANNELS`, 0 where unknown."""
+        """Stack [f_blood, f_mel, dR, dG, dB] of every texel (Equation 9 of Alotaibi & Smith 2017).
+
+        Returns:
+            Features in the order of `CHANNELS`, row by row, 0 where a texel is unknown.
+        """
         planes = np.stack([self.f_blood, self.f_mel, *np.moveaxis(self.offset, -1, 0)])
         known: Float32[np.ndarray, "5 texels"] = np.where(self.mask, planes, np.float32(0))
         return known.reshape(len(planes), -1)
 
     def albedo(self, colour: SkinColour) -> Float32[np.ndarray, "size size 3"]:
-        """Linear RGB of the known texels, 0 elsewhere (equation 11)."""
+        """Compute the linear RGB of the known texels (Equation 11 of Alotaibi & Smith 2017).
+
+        Args:
+            colour: light, camera and calibration under which the albedo is seen.
+
+        Returns:
+            Linear RGB, 0 where a texel is unknown.
+        """
         rgb = np.where(self.mask.ravel(), colour.decode(self.features()), np.float32(0))
         return np.ascontiguousarray(rgb.T.reshape(*self.mask.shape, 3))

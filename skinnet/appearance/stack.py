@@ -11,21 +11,20 @@ import numpy as np
 from jaxtyping import Bool, Float32, Int
 from numpy.typing import NDArray
 
-from skinnet.appearance._feature_blocks import block_width
+from skinnet.appearance._feature_blocks import compute_block_width
 from skinnet.appearance.colour import CHANNELS, SkinColour
 from skinnet.appearance.skin_texture import SkinTexture
 from skinnet.errors import InputError
 
-FEATURES, MASKS, STATE = "features.npy", "masks.npy", "stack.json"
-"""Files of a stack."""
+_FEATURES, _MASKS, _STATE = "features.npy", "masks.npy", "stack.json"
 
 
 @dataclass(frozen=True, eq=False)
-class Cover:
-    """Which texels a model is built on: `mask` [n, n], and the counts that led to it.
+class _Cover:
+    """The texels that a model is built on.
 
-    `left_out` texels are known in too few subjects, of those inside the drawn mask; `filled` texels
-    of single subjects are in the mask and unknown: in the model they are the mean of the others.
+    `left_out` counts the texels of the drawn mask that too few subjects have, and `filled` the
+    missing values of single subjects inside `mask`, which take the mean of the others.
     """
 
     mask: Bool[np.ndarray, "size size"]
@@ -41,10 +40,16 @@ class Cover:
 
 @dataclass(frozen=True, eq=False)
 class SubjectStack:
-    """The features of people in one texture space, in a folder of memory-mapped arrays.
+    """The features of many people in one texture space, in a folder of memory-mapped arrays.
 
-    `features.npy` float32 [subjects, 5, n * n] in the order of `CHANNELS`, `masks.npy` bool
-    [subjects, n * n]. All are inverted under the same `colour`. Made by `spool`.
+    `write_stack` makes one and `open_stack` opens it. The folder holds features.npy, float32
+    [subjects, 5, n * n] in the order of `CHANNELS`, and masks.npy, bool [subjects, n * n].
+
+    Args:
+        folder: holds the arrays.
+        names: names of the subjects.
+        size: texels along a side, n.
+        colour: light, camera and calibration under which all subjects were inverted.
     """
 
     folder: Path
@@ -53,18 +58,27 @@ class SubjectStack:
     colour: SkinColour
 
     def texture(self, index: int) -> SkinTexture:
-        """One subject."""
+        """Read one subject."""
         square = (self.size, self.size)
-        blood, mel, *offset = np.array(self.array(FEATURES)[index]).reshape(-1, *square)
-        mask = np.array(self.array(MASKS)[index]).reshape(square)
+        blood, mel, *offset = np.array(self.array(_FEATURES)[index]).reshape(-1, *square)
+        mask = np.array(self.array(_MASKS)[index]).reshape(square)
         return SkinTexture(mel, blood, np.stack(offset, -1), mask, self.names[index])
 
     def cover(
-        self, share: float = 1.0, within: Bool[np.ndarray, "rows columns"] | None = None
-    ) -> Cover:
-        """The texels that at least that share of the subjects has, inside a drawn mask if given.
+        self, share: float = 1.0, within: Bool[np.ndarray, "size size"] | None = None
+    ) -> _Cover:
+        """Choose the texels that enough subjects have.
 
-        Raises `InputError` for a share outside (0, 1], a mask of another size, and if none is left.
+        Args:
+            share: part of the subjects that must have a texel, in (0, 1].
+            within: drawn mask; texels outside it are left out. None: no texel is.
+
+        Returns:
+            The `mask` and the counts that led to it.
+
+        Raises:
+            InputError: if the share is outside (0, 1], the mask has another size, or no texel is
+                left.
         """
         if not 0 < share <= 1:
             raise InputError(
@@ -80,14 +94,22 @@ class SubjectStack:
                 f"{self.folder} and inside the mask; allow a smaller share, or draw another mask."
             )
         left_out = int((drawn & (known > 0) & ~mask).sum())
-        return Cover(mask, left_out, int((len(self.names) - known[mask]).sum()))
+        return _Cover(mask, left_out, int((len(self.names) - known[mask]).sum()))
 
     def read_blocks(
-        self, mask: Bool[np.ndarray, "rows columns"], width: int | None = None
+        self, mask: Bool[np.ndarray, "size size"], width: int | None = None
     ) -> "_StackBlocks":
-        """The features of the texels in a mask, read about `width` texels at a time.
+        """Prepare to read the features of the texels in a mask, block by block.
 
-        Raises `InputError` for a mask of another size, or a texel in it that no subject has.
+        Args:
+            mask: texels to read.
+            width: texels of the texture that are read at a time; None: as many as memory allows.
+
+        Returns:
+            An iterable of blocks [subjects, 5, texels]; a missing value is the mean of the others.
+
+        Raises:
+            InputError: if the mask has another size or holds a texel that no subject has.
         """
         self._check_size(mask)
         if lost := int((self._known[mask.ravel()] == 0).sum()):
@@ -97,7 +119,7 @@ class SubjectStack:
             )
         return _StackBlocks(self, mask, width)
 
-    def _check_size(self, mask: Bool[np.ndarray, "rows columns"]) -> None:
+    def _check_size(self, mask: Bool[np.ndarray, "size size"]) -> None:
         if mask.shape != (self.size, self.size):
             raise InputError(
                 f"The mask is {mask.shape[1]} x {mask.shape[0]} texels and the subjects of "
@@ -106,51 +128,55 @@ class SubjectStack:
 
     @cached_property
     def _known(self) -> Int[np.ndarray, "texels"]:
-        """How many subjects have each texel."""
+        """Number of subjects that have each texel."""
         known = np.zeros(self.size**2, np.int64)
         for index in range(len(self.names)):
-            known += self.array(MASKS)[index]
+            known += self.array(_MASKS)[index]
         return known
 
     def array(self, name: str) -> NDArray[Any]:
-        """One of the arrays, memory-mapped."""
+        """Map one of the arrays of the folder into memory."""
         return np.asarray(np.load(self.folder / name, mmap_mode="r"))
 
 
 class _StackBlocks:
-    """`FeatureBlocks` of a stack's features inside a mask; an unknown texel is the mean of the others."""
+    """`FeatureBlocks` of a stack inside a mask; a missing value is the mean of the others."""
 
     def __init__(
         self, stack: SubjectStack, mask: Bool[np.ndarray, "size size"], width: int | None = None
     ):
         self.stack, self.inside = stack, mask.ravel()
         self.shape = (len(stack.names), len(CHANNELS), int(mask.sum()))
-        self.width = width or block_width(*self.shape[:2])
+        self.width = width or compute_block_width(*self.shape[:2])
 
-    def __iter__(self) -> Iterator[Float32[np.ndarray, "subjects 5 columns"]]:
+    def __iter__(self) -> Iterator[Float32[np.ndarray, "subjects 5 texels"]]:
         for start in range(0, self.inside.size, self.width):
             span = slice(start, start + self.width)
             if (inside := self.inside[span]).any():
-                # Mapped anew for each block, so that what was read does not stay resident.
-                features = self.stack.array(FEATURES)[:, :, span][:, :, inside]
-                yield _fill(features, self.stack.array(MASKS)[:, span][:, inside])
+                # A new map for each block lets the system drop the pages of the last one.
+                features = self.stack.array(_FEATURES)[:, :, span][:, :, inside]
+                yield _fill(features, self.stack.array(_MASKS)[:, span][:, inside])
 
 
 def _fill(
-    features: Float32[np.ndarray, "subjects 5 columns"], masks: Bool[np.ndarray, "subjects columns"]
-) -> Float32[np.ndarray, "subjects 5 columns"]:
+    features: Float32[np.ndarray, "subjects 5 texels"], masks: Bool[np.ndarray, "subjects texels"]
+) -> Float32[np.ndarray, "subjects 5 texels"]:
     if masks.all():
         return features
     mean = features.sum(0, dtype=np.float64) / masks.sum(0)
-    filled: Float32[np.ndarray, "subjects 5 columns"] = np.where(
+    filled: Float32[np.ndarray, "subjects 5 texels"] = np.where(
         masks[:, None], features, mean.astype(np.float32)
     )
     return filled
 
 
 def open_stack(folder: Path) -> SubjectStack:
-    """A finished stack. Raises `InputError` for anything else."""
-    state = read_state(folder)
+    """Open a stack that `write_stack` has finished; see there for an example.
+
+    Raises:
+        InputError: if the folder holds no stack, an unfinished or a damaged one.
+    """
+    state = _read_state(folder)
     try:
         names, colour = tuple(state["names"]), SkinColour.from_record(state["colour"])
         done, size = int(state["done"]), int(state["size"])
@@ -161,23 +187,23 @@ def open_stack(folder: Path) -> SubjectStack:
             f"{folder} holds {done} of {len(names)} subjects; run the command that makes it again "
             "to go on."
         )
-    if not is_whole(folder, len(names), size):
+    if not _is_whole(folder, len(names), size):
         raise InputError(f"The arrays in {folder} are damaged; delete the folder, make it again.")
     return SubjectStack(folder, names, size, colour)
 
 
-def read_state(folder: Path) -> dict[str, Any]:
-    """What a folder says of its stack. Raises `InputError` if it says nothing."""
+def _read_state(folder: Path) -> dict[str, Any]:
+    """Read the progress and description of a folder's stack."""
     try:
-        state = json.loads((folder / STATE).read_text(encoding="utf-8"))
+        state = json.loads((folder / _STATE).read_text(encoding="utf-8"))
     except (OSError, ValueError) as error:
         raise InputError(f"{folder} holds no stack of subjects ({error}).") from error
     return state if isinstance(state, dict) else {}
 
 
-def is_whole(folder: Path, subjects: int, size: int) -> bool:
-    """Whether the arrays are there, for so many subjects of that size."""
-    shapes = {FEATURES: (subjects, len(CHANNELS), size**2), MASKS: (subjects, size**2)}
+def _is_whole(folder: Path, subjects: int, size: int) -> bool:
+    """Tell whether both arrays are there and have the shapes of so many subjects."""
+    shapes = {_FEATURES: (subjects, len(CHANNELS), size**2), _MASKS: (subjects, size**2)}
     try:
         return all(
             np.load(folder / name, mmap_mode="r").shape == shape for name, shape in shapes.items()

@@ -1,4 +1,4 @@
-"""Writing a stack of subjects: one at a time, and on from where it was interrupted."""
+"""Writer of the subject stack: one subject at a time; an interrupted run is resumed."""
 
 import hashlib
 import json
@@ -13,18 +13,18 @@ from numpy.lib.format import open_memmap
 from skinnet.appearance.colour import CHANNELS, SkinColour
 from skinnet.appearance.skin_texture import SkinTexture
 from skinnet.appearance.stack import (
-    FEATURES,
-    MASKS,
-    STATE,
+    _FEATURES,
+    _MASKS,
+    _STATE,
     SubjectStack,
-    is_whole,
+    _is_whole,
+    _read_state,
     open_stack,
-    read_state,
 )
 from skinnet.errors import InputError
 from skinnet.files import write_text
 
-FORMAT = 1
+_STACK_FORMAT = 1
 """Version of the folder's layout."""
 
 
@@ -34,26 +34,47 @@ def write_stack(
     colour: SkinColour,
     inputs: str,
 ) -> SubjectStack:
-    """Write subjects into a folder one after the other, each made when its turn comes.
+    """Write subjects into a folder one by one, so that only one is in memory at a time.
 
-    Only one is in memory at a time. Interrupted work goes on after the last subject that was
-    written, in whose place nothing is made again. `inputs` is anything that changes when a subject
-    would: a hash of the files and settings. It guards the folder together with the names, their
-    order and `colour`.
+    If an earlier run was interrupted, this one resumes after the last subject that was written.
 
-    Raises `InputError` if the folder holds a stack of something else, there are fewer than two
-    subjects, one has another resolution than those before it, or the disk is too full.
+    Args:
+        folder: where the stack goes; made if needed.
+        subjects: for each name a function that makes the texture.
+        colour: light, camera and calibration under which all subjects were inverted.
+        inputs: any text that changes when a subject would change, such as a hash of files and
+            settings. A stack with other inputs, names or colour is not written over.
+
+    Returns:
+        The finished stack.
+
+    Raises:
+        InputError: if the folder holds another stack, there are fewer than two subjects, their
+            resolutions differ, or the disk is too full.
+
+    Example:
+        >>> import tempfile
+        >>> def make(level: float) -> SkinTexture:
+        ...     known = np.ones((2, 2), bool)
+        ...     fraction = np.full((2, 2), level, np.float32)
+        ...     return SkinTexture(fraction, fraction, np.zeros((2, 2, 3), np.float32), known)
+        >>> subjects = {"pale": lambda: make(0.02), "dark": lambda: make(0.1)}
+        >>> with tempfile.TemporaryDirectory() as folder:
+        ...     stack = write_stack(Path(folder), subjects, SkinColour(nodes=(4, 4)), "two levels")
+        ...     names, blood = stack.names, open_stack(Path(folder)).texture(1).f_blood[0, 0]
+        >>> names, round(float(blood), 3)
+        (('pale', 'dark'), 0.1)
     """
     if len(subjects) < 2:
         raise InputError(f"A model needs at least two subjects; got {len(subjects)}.")
     state: dict[str, Any] = {
-        "format": FORMAT,
-        "digest": _digest(list(subjects), colour, inputs),
+        "format": _STACK_FORMAT,
+        "digest": _compute_digest(list(subjects), colour, inputs),
         "names": list(subjects),
         "colour": colour.to_record(),
     }
     folder.mkdir(parents=True, exist_ok=True)
-    done, size = _progress(folder, state["digest"])
+    done, size = _read_progress(folder, state["digest"])
     for index, (name, make) in enumerate(subjects.items()):
         if index < done:
             continue
@@ -66,45 +87,45 @@ def write_stack(
                 "warp all to one resolution."
             )
         _write(folder, index, texture)
-        write_text(folder / STATE, json.dumps(state | {"size": size, "done": index + 1}))
+        write_text(folder / _STATE, json.dumps(state | {"size": size, "done": index + 1}))
     return open_stack(folder)
 
 
-def _progress(folder: Path, digest: str) -> tuple[int, int]:
-    """How many subjects the folder already holds, and their size; none if its arrays are lost."""
-    if not (folder / STATE).exists():
+def _read_progress(folder: Path, digest: str) -> tuple[int, int]:
+    """Read how many subjects the folder holds, and their size; none if its arrays are lost."""
+    if not (folder / _STATE).exists():
         return 0, 0
-    state = read_state(folder)
+    state = _read_state(folder)
     if state.get("digest") != digest:
         raise InputError(
             f"{folder} holds subjects, settings or colours other than these; choose another folder "
             "or delete it."
         )
-    whole = is_whole(folder, len(state["names"]), state["size"])
+    whole = _is_whole(folder, len(state["names"]), state["size"])
     return (state["done"], state["size"]) if whole else (0, 0)
 
 
 def _allocate(folder: Path, subjects: int, size: int) -> int:
     needed = subjects * size**2 * (4 * len(CHANNELS) + 1)
-    # Written to through a memory map, a full disk ends the process without a word.
+    # A memory map on a full disk ends the process without a message.
     if needed > (free := shutil.disk_usage(folder).free):
         raise InputError(
             f"{subjects} subjects of {size} x {size} texels take {needed / 1e9:.1f} GB, and "
             f"{folder} has {free / 1e9:.1f} GB free; choose another disk."
         )
-    open_memmap(folder / FEATURES, "w+", np.float32, (subjects, len(CHANNELS), size**2)).flush()
-    open_memmap(folder / MASKS, "w+", bool, (subjects, size**2)).flush()
+    open_memmap(folder / _FEATURES, "w+", np.float32, (subjects, len(CHANNELS), size**2)).flush()
+    open_memmap(folder / _MASKS, "w+", bool, (subjects, size**2)).flush()
     return size
 
 
 def _write(folder: Path, index: int, texture: SkinTexture) -> None:
-    rows = {FEATURES: texture.features(), MASKS: texture.mask.ravel()}
+    rows = {_FEATURES: texture.features(), _MASKS: texture.mask.ravel()}
     for name, row in rows.items():
         array = np.load(folder / name, mmap_mode="r+")
         array[index] = row
         array.flush()
 
 
-def _digest(names: list[str], colour: SkinColour, inputs: str) -> str:
-    text = json.dumps([FORMAT, names, colour.to_record(), inputs])
+def _compute_digest(names: list[str], colour: SkinColour, inputs: str) -> str:
+    text = json.dumps([_STACK_FORMAT, names, colour.to_record(), inputs])
     return hashlib.sha256(text.encode()).hexdigest()

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from skinnet.appearance import _feature_blocks
-from skinnet.appearance._feature_blocks import ArrayBlocks, block_width
+from skinnet.appearance._feature_blocks import ArrayBlocks, compute_block_width
 from skinnet.appearance._principal import (
     PrincipalComponents,
     combine_grams,
@@ -59,7 +59,7 @@ def test_a_memmap_is_read_block_by_block(tmp_path: Path, monkeypatch: pytest.Mon
 
 def test_a_thousand_subjects_take_blocks_of_bounded_size() -> None:
     for subjects in (25, 1000):
-        assert 0.9 * 2**27 < 4 * subjects * 5 * block_width(subjects, 5) <= 2**27
+        assert 0.9 * 2**27 < 4 * subjects * 5 * compute_block_width(subjects, 5) <= 2**27
 
 
 def test_inner_products_are_gathered_channel_by_channel() -> None:

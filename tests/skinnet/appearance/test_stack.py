@@ -195,7 +195,7 @@ def test_a_mask_where_nobody_has_skin_is_refused(stack: SubjectStack) -> None:
         stack.read_blocks(np.ones((20, 20), bool))
 
 
-@pytest.mark.parametrize("name, value, sentence", [
+@pytest.mark.parametrize(("name", "value", "sentence"), [
     ("f_mel", 12.3, "person 0: f_mel is a volume fraction .* got 12.3. Was it given in percent"),
     ("f_blood", -0.1, "person 0: f_blood is a volume fraction .* got -0.1"),
     ("f_blood", np.nan, "person 0: f_blood has a known texel that is not finite"),
