@@ -1,1 +1,5 @@
-"""Statistics of the appearance of faces."""
+"""Statistical models of skin appearance: hybrid, linear and joint, and their measures."""
+
+import lazy_loader
+
+__getattr__, __dir__, __all__ = lazy_loader.attach_stub(__name__, __file__)

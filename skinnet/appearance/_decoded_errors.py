@@ -1,4 +1,4 @@
-"""Distances in RGB between mixtures of subjects and the subjects, where decoding is not linear."""
+"""Differences in RGB between mixtures of subjects and subjects when decoding is not linear."""
 
 from collections.abc import Callable
 
@@ -13,13 +13,13 @@ Decode = Callable[
 
 
 def compute_decoded_errors(
-    columns: FeatureBlocks, decode: Decode, weights: Float[np.ndarray, "mixtures subjects"]
+    blocks: FeatureBlocks, decode: Decode, weights: Float[np.ndarray, "mixtures subjects"]
 ) -> Float[np.ndarray, "mixtures subjects"]:
-    """RMS difference in RGB between each decoded mixture of features and each subject."""
-    subjects, channels, texels = columns.shape
+    """Compute the RMS difference in RGB between each decoded mixture and each subject."""
+    subjects, channels, texels = blocks.shape
     squares = np.zeros((len(weights), subjects))
     single = weights.astype(np.float32)
-    for block in columns:
+    for block in blocks:
         colours = decode(block)
         mean = colours.mean(0)
         truth = _center(colours, mean)
@@ -35,14 +35,14 @@ def compute_decoded_errors(
 def _center(
     colours: Float32[np.ndarray, "faces 3 texels"], mean: Float32[np.ndarray, "3 texels"]
 ) -> Float[np.ndarray, "faces values"]:
-    # Small distances are differences of large squares: less is lost about the mean, in float64.
+    # A small distance is a difference of large squares; centring and float64 keep its digits.
     return np.asarray((colours - mean).reshape(len(colours), -1), np.float64)
 
 
 def subsample(
     mask: Bool[np.ndarray, "size size"], texels: int | None
 ) -> Bool[np.ndarray, "size size"]:
-    """That many texels of a mask, always the same random ones; None or too many: all of them."""
+    """Keep that many random texels of a mask, always the same; all of them if None or too many."""
     inside = np.flatnonzero(mask)
     if texels is None or texels >= inside.size:
         return mask

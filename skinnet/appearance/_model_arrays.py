@@ -1,4 +1,4 @@
-"""Files of appearance models: .npz, never pickled, whole or not at all."""
+"""Arrays of models and maps in .npz files: nothing is pickled, all is written or nothing."""
 
 import json
 import zipfile
@@ -17,14 +17,14 @@ from skinnet.appearance.colour import SkinColour
 from skinnet.errors import InputError
 from skinnet.files import write_atomically
 
-FORMAT = 1
-"""Version of the files' contents."""
+MODEL_FORMAT = 1
+"""Version of the contents."""
 
 READ_ERRORS = (
     *(OSError, EOFError, KeyError, TypeError, ValueError, AttributeError),
     *(zipfile.BadZipFile, zlib.error, NotImplementedError, MemoryError),
 )
-"""What NumPy, zipfile and JSON raise on damaged files."""
+"""Errors that NumPy, zipfile and JSON raise on damaged files."""
 
 STATISTICS = ("mean", "basis", "variances", "scales")
 """Arrays of a `PrincipalComponents`."""
@@ -39,10 +39,7 @@ def save_model(
     mask: Bool[np.ndarray, "size size"],
     colour: SkinColour,
 ) -> None:
-    """Write a model of the given kind, named after its class.
-
-    Raises `InputError` if the path does not end in .npz or cannot be written.
-    """
+    """Write a model of the given kind, which is the name of its class."""
     header = {
         "colour": colour.to_record(),
         "total": statistics.total,
@@ -55,7 +52,7 @@ def save_model(
 def load_model(
     path: Path, kind: str
 ) -> tuple[PrincipalComponents, Bool[np.ndarray, "size size"], SkinColour]:
-    """Read a model of the given kind. Raises `InputError` for anything else."""
+    """Read a model of the given kind; anything else is an `InputError`."""
     header, arrays = read_arrays(path, kind, (*STATISTICS, "mask"))
     mask = arrays.pop("mask")
     try:
@@ -71,7 +68,7 @@ def load_model(
 def build_statistics(
     path: Path, header: Mapping[str, Any], arrays: Mapping[str, Array]
 ) -> PrincipalComponents:
-    """The components in a file. Raises `InputError` where its parts do not fit together."""
+    """Build the components from a file; arrays that do not fit together are an `InputError`."""
     mean, basis, variances, scales = (arrays[name] for name in STATISTICS)
     if basis.ndim != 3 or basis.shape != (*variances.shape, *scales.shape, basis.shape[2]):
         raise make_damage_error(path)
@@ -89,8 +86,8 @@ def build_statistics(
 def write_arrays(path: Path, kind: str, header: dict[str, Any], arrays: dict[str, Any]) -> None:
     """Write arrays under a header that says what they are."""
     if path.suffix != ".npz":
-        raise InputError(f"{path} does not end in .npz, as models' files do.")
-    header = {"kind": kind, "format": FORMAT, "skinnet": __version__} | header
+        raise InputError(f"{path} does not end in .npz; models and maps are .npz files.")
+    header = {"kind": kind, "format": MODEL_FORMAT, "skinnet": __version__} | header
     try:
         with write_atomically(path) as part:
             np.savez(part, header=np.array(json.dumps(header)), **arrays)
@@ -101,14 +98,14 @@ def write_arrays(path: Path, kind: str, header: dict[str, Any], arrays: dict[str
 def read_arrays(
     path: Path, kind: str, names: tuple[str, ...]
 ) -> tuple[dict[str, Any], dict[str, Array]]:
-    """Header and arrays of a file of that kind; raises `InputError` for anything else."""
+    """Read the header and arrays of a file of that kind; anything else is an `InputError`."""
     if not path.is_file():
         raise InputError(f"There is no file {path}; check the path.")
     try:
-        # Opened here, since NumPy leaves a file open that turns out to be no archive.
+        # NumPy does not close a file that turns out to be no archive.
         with path.open("rb") as opened, np.load(opened, allow_pickle=False) as file:
             header = json.loads(str(file["header"]))
-            _check(path, kind, header)
+            _check_header(path, kind, header)
             return header, {name: file[name] for name in names}
     except InputError:
         raise
@@ -117,17 +114,17 @@ def read_arrays(
 
 
 def make_damage_error(path: Path) -> InputError:
-    """The sentence for a file that is not what it should be."""
+    """Make the error for a file that is not a whole model."""
     return InputError(
         f"{path} is not a whole model of skinnet's (damaged, cut short, or something else); make "
         "it again."
     )
 
 
-def _check(path: Path, kind: str, header: dict[str, Any]) -> None:
-    if header["format"] != FORMAT:
+def _check_header(path: Path, kind: str, header: dict[str, Any]) -> None:
+    if header["format"] != MODEL_FORMAT:
         raise InputError(
-            f"{path} has format {header['format']}, and this skinnet reads format {FORMAT}; make "
+            f"{path} has format {header['format']}, and this skinnet reads format {MODEL_FORMAT}; make "
             "it again, or install the skinnet that made it."
         )
     if header["kind"] != kind:

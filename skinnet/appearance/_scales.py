@@ -1,4 +1,4 @@
-"""What the features of the hybrid model are divided by, since they mix units."""
+"""Scales of the hybrid model's features, which mix units."""
 
 import numpy as np
 import torch
@@ -7,30 +7,27 @@ from jaxtyping import Bool, Float
 from skinnet.appearance.stack import SubjectStack
 
 LEAST_SCALE = 1e-4
-"""Least deviation that a block is divided by; what varies less is rounding and stays small."""
+"""Least scale: a channel that varies less is rounding, which must not be amplified."""
 
 
-def equal_variance(
+def compute_equal_variance(
     grams: Float[np.ndarray, "5 subjects subjects"], texels: int
 ) -> Float[np.ndarray, "5"]:
-    """Scales that give hemoglobin, melanin and the offset the same total variance.
+    """Compute scales that give hemoglobin, melanin and the offset the same total variance.
 
-    The offset is one block: its three channels keep their proportions.
+    The three channels of the offset share one scale, so they keep their proportions.
     """
     blood, mel, *offset = np.trace(grams, axis1=1, axis2=2) / (grams.shape[1] - 1) / texels
     variances = np.array([blood, mel, *[sum(offset)] * 3])
     return np.asarray(np.maximum(np.sqrt(variances), LEAST_SCALE))
 
 
-def equal_effect(
+def compute_equal_effect(
     stack: SubjectStack, mask: Bool[np.ndarray, "size size"] | None = None
 ) -> Float[np.ndarray, "5"]:
-    """Scales that make a unit of every feature change linear RGB by one, at the mean colour.
-
-    Components are then ordered by what is seen of them, to first order.
-    """
-    columns = stack.read_blocks(stack.cover().mask if mask is None else mask)
-    total = sum(block.sum((0, 2), dtype=np.float64) for block in columns)
-    mean = torch.from_numpy(total / (columns.shape[0] * columns.shape[2]))[:, None]
-    slopes = torch.autograd.functional.jacobian(stack.colour, mean)
-    return np.asarray(1 / slopes.flatten(1).norm(dim=0).numpy())
+    """Compute scales by which a unit of each feature changes linear RGB by one, at its mean."""
+    blocks = stack.read_blocks(stack.cover().mask if mask is None else mask)
+    total = sum(block.sum((0, 2), dtype=np.float64) for block in blocks)
+    mean = torch.from_numpy(total / (blocks.shape[0] * blocks.shape[2]))[:, None]
+    derivatives = torch.autograd.functional.jacobian(stack.colour, mean)
+    return np.asarray(1 / derivatives.flatten(1).norm(dim=0).numpy())

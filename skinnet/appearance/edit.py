@@ -39,8 +39,8 @@ class PigmentEdit:
     def __post_init__(self) -> None:
         if not 0 <= self.scale <= _LARGEST_SCALE:
             raise InputError(
-                f"scale is a factor from 0 to {_LARGEST_SCALE:g}; got {self.scale}. Was it given in "
-                "percent?"
+                f"scale is a factor from 0 to {_LARGEST_SCALE:g}; got {self.scale}. Was it given "
+                "in percent?"
             )
         if not -1 <= self.add <= 1:
             raise InputError(

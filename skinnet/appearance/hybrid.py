@@ -1,4 +1,4 @@
-"""The hybrid of biophysical and statistical modelling (Alotaibi & Smith 2017, section 5)."""
+"""The hybrid biophysical and statistical model (section 5 of Alotaibi & Smith 2017)."""
 
 from functools import partial
 
@@ -9,41 +9,82 @@ from torch import Tensor
 
 from skinnet.appearance._decoded_errors import compute_decoded_errors, subsample
 from skinnet.appearance._feature_blocks import FeatureBlocks
-from skinnet.appearance._mixtures import Errors
+from skinnet.appearance._mixtures import MixtureErrors
 from skinnet.appearance._model import AppearanceModel
-from skinnet.appearance._scales import equal_variance
+from skinnet.appearance._scales import compute_equal_effect, compute_equal_variance
 from skinnet.appearance.colour import CHANNELS, SkinColour
 from skinnet.appearance.skin_texture import SkinTexture
 from skinnet.appearance.stack import SubjectStack
 
 
 class HybridModel(AppearanceModel):
-    """Principal components of [f_blood, f_mel, dR, dG, dB] (equations 9 to 11).
+    """Principal components of pigments and offset, [f_blood, f_mel, dR, dG, dB].
 
-    The features mix units, so blocks are divided by a scale before the analysis. The paper does not
-    say how. By default hemoglobin, melanin and the offset have the same total variance
-    (`equal_variance`); `fit(stack, scales=equal_effect(stack))` weighs them by what they change in
-    RGB, and any five positive numbers will do.
+    The features mix units, so each channel is divided by a scale before the analysis; the paper
+    does not say how. By default hemoglobin, melanin and the offset have the same total variance.
+    `fit(stack, scales=HybridModel.equal_effect_scales(stack))` scales them by their effect on RGB
+    instead, and any five positive numbers are allowed.
 
-    Fractions that a sample brings outside [0, 1] count as 0 or 1; `clamped` says how many do.
+    Fractions of a sample outside [0, 1] are clamped; `measure_clamping` gives their share.
+
+    Source:
+        Section 5 and Equations 9 to 11 of Alotaibi & Smith 2017.
+
+    Example:
+        >>> import tempfile
+        >>> from pathlib import Path
+        >>> from skinnet.appearance.colour import SkinColour
+        >>> from skinnet.appearance.stack_writer import write_stack
+        >>> def make(seed: int) -> SkinTexture:
+        ...     maps = np.random.default_rng(seed).uniform(0.02, 0.1, (5, 4, 4)).astype(np.float32)
+        ...     return SkinTexture(maps[0], maps[1], 0.1 * maps[2:].T, np.ones((4, 4), bool))
+        >>> subjects = {str(seed): partial(make, seed) for seed in range(4)}
+        >>> with tempfile.TemporaryDirectory() as folder:
+        ...     stack = write_stack(Path(folder), subjects, SkinColour(nodes=(16, 16)), "example")
+        ...     model = HybridModel.fit(stack)
+        >>> face = model.texture(model.sample(1, seed=0)[0])
+        >>> len(model.statistics.variances), face.f_mel.shape
+        (3, (4, 4))
     """
+
+    @staticmethod
+    def equal_effect_scales(
+        stack: SubjectStack, mask: Bool[np.ndarray, "size size"] | None = None
+    ) -> Float[np.ndarray, "5"]:
+        """Compute scales by which a unit of each feature changes linear RGB by one.
+
+        The change is that at the mean colour. Components are then ordered by their visible effect,
+        to first order.
+
+        Args:
+            stack: the subjects.
+            mask: texels that count; None: those that all subjects have.
+
+        Returns:
+            One scale for each channel, for `fit`.
+        """
+        return compute_equal_effect(stack, mask)
 
     @classmethod
     def read_blocks(cls, stack: SubjectStack, mask: Bool[np.ndarray, "size size"]) -> FeatureBlocks:
+        """Prepare to read pigments and offset, inside a mask."""
         return stack.read_blocks(mask)
 
     @classmethod
     def default_scales(
         cls, grams: Float[np.ndarray, "channels subjects subjects"], texels: int
     ) -> Float[np.ndarray, "channels"]:
-        return equal_variance(grams, texels)
+        """Give hemoglobin, melanin and the offset the same total variance."""
+        return compute_equal_variance(grams, texels)
 
-    def row(self, texture: SkinTexture) -> Float32[np.ndarray, "channels texels"]:
+    def extract_features(self, texture: SkinTexture) -> Float32[np.ndarray, "channels texels"]:
+        """Stack the pigments and the offset of one subject (Equation 9)."""
         return texture.features()
 
     def decode(
         self, features: Float[Tensor, "*batch channels texels"]
     ) -> Float[Tensor, "*batch 3 texels"]:
+        """Decode pigments and offset to linear RGB (Equation 11)."""
         rgb: Tensor = self.colour(features)
         return rgb
 
@@ -52,13 +93,22 @@ class HybridModel(AppearanceModel):
         stack: SubjectStack,
         grams: Float[np.ndarray, "channels subjects subjects"],
         texels: int | None,
-    ) -> Errors:
-        columns = self.read_blocks(stack, subsample(self.mask, texels))
-        return partial(compute_decoded_errors, columns, self.colour.decode)
+    ) -> MixtureErrors:
+        """Prepare to compute RMS differences between decoded mixtures and subjects."""
+        blocks = self.read_blocks(stack, subsample(self.mask, texels))
+        return partial(compute_decoded_errors, blocks, self.colour.decode)
 
     @torch.no_grad()
     def texture(self, beta: Float[np.ndarray, "components"], name: str = "face") -> SkinTexture:
-        """The maps of coefficients, fractions in [0, 1]; 0 outside the mask."""
+        """Compute the maps of coefficients beta (Equation 10 of Alotaibi & Smith 2017).
+
+        Args:
+            beta: coefficients.
+            name: name of the texture.
+
+        Returns:
+            Maps with fractions clamped to [0, 1], 0 outside the mask.
+        """
         features = self.features(torch.from_numpy(beta).to(self.mean)).numpy(force=True)
         maps = np.zeros((len(CHANNELS), *self.mask.shape), np.float32)
         maps[:, self.mask] = features
@@ -66,7 +116,7 @@ class HybridModel(AppearanceModel):
         return SkinTexture(mel, blood, np.stack(list(maps[2:]), -1), self.mask, name)
 
     @torch.no_grad()
-    def clamped(self, betas: Float[np.ndarray, "samples components"]) -> float:
-        """Share of texels, over these faces, with a fraction outside [0, 1]."""
+    def measure_clamping(self, betas: Float[np.ndarray, "samples components"]) -> float:
+        """Compute the share of texels in these faces that have a fraction outside [0, 1]."""
         faces = (self.features(torch.from_numpy(beta).to(self.mean)) for beta in betas)
         return float(np.mean([SkinColour.share_outside(face.numpy(force=True)) for face in faces]))

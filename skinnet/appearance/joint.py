@@ -1,4 +1,4 @@
-"""Shape and appearance together, which the paper names as future work (section 7)."""
+"""A joint model of shape and appearance, future work in section 7 of Alotaibi & Smith 2017."""
 
 from pathlib import Path
 
@@ -20,10 +20,20 @@ from skinnet.errors import InputError
 class JointModel(nn.Module):
     """Principal components of [w alpha / deviations, beta], as in an active appearance model.
 
-    alpha [S] are coefficients of a `ShapeModel` and beta [K] those of an `AppearanceModel`, which
-    stay what they are; gamma [J] are the joint ones. Called with gamma [..., J], as a tensor, it
-    gives alpha [..., S] and beta [..., K], and gradients. `weight` is w, which trades shape for
-    appearance; by default both have the same total variance (Cootes et al. 2001).
+    alpha [S] are coefficients of a `ShapeModel`, and beta [K] are those of a `HybridModel` or
+    `LinearModel`; both models stay unchanged. A call with joint coefficients gamma [..., J] gives
+    alpha [..., S] and beta [..., K], and gradients. The weight w trades shape for appearance.
+
+    Source:
+        Cootes et al. 2001, Active Appearance Models.
+
+    Example:
+        >>> rng = np.random.default_rng(0)
+        >>> alphas, betas = rng.standard_normal((5, 3)), rng.standard_normal((5, 2))
+        >>> model = JointModel.fit(alphas, betas, deviations=np.ones(3))
+        >>> alpha, beta = model.reconstruct(model.project(alphas[0], betas[0]))
+        >>> bool(np.allclose(alpha, alphas[0], atol=1e-4))
+        True
     """
 
     mean: Tensor
@@ -54,12 +64,18 @@ class JointModel(nn.Module):
         weight: float | None = None,
         components: int | None = None,
     ) -> "JointModel":
-        """Joint components of the same people's shapes and appearances, row by row.
+        """Fit joint components to the shapes and appearances of the same people.
 
-        `deviations` are the standard deviations of alpha, sqrt(ShapeModel.variances), and `betas`
-        for instance `appearance.coefficients(stack)`. Raises `InputError` where rows or deviations
-        do not match, a deviation or the weight is not positive, shapes do not vary, or more
-        components are asked for than the people span.
+        Args:
+            alphas: shape coefficients, one row for each person.
+            betas: appearance coefficients, such as `appearance.coefficients(stack)`.
+            deviations: standard deviations of alpha, the root of `ShapeModel.variances`.
+            weight: w; None: shape and appearance have the same total variance.
+            components: number of joint components, less than that of people; None: all, up to 100.
+
+        Raises:
+            InputError: if rows or deviations do not match, a deviation or the weight is not
+                positive, shapes do not differ, or the people span fewer components.
         """
         if len(alphas) != len(betas):
             raise InputError(f"There are {len(alphas)} shapes and {len(betas)} appearances.")
@@ -68,7 +84,7 @@ class JointModel(nn.Module):
                 f"alpha has {alphas.shape[1]} coefficients and needs as many positive deviations; "
                 f"got {deviations.size}, the least {deviations.min(initial=np.inf):g}."
             )
-        weight = equal_weight(alphas / deviations, betas) if weight is None else weight
+        weight = _balance(alphas / deviations, betas) if weight is None else weight
         if not 0 < weight < np.inf:
             raise InputError(
                 f"The weight of shape is {weight:g}; give one above 0, and shapes that differ."
@@ -80,20 +96,20 @@ class JointModel(nn.Module):
 
     @property
     def explained(self) -> Float[np.ndarray, "components"]:
-        """Share of the joint variance that each component has."""
+        """Share of the joint variance that each component explains."""
         return self.statistics.variances / self.statistics.total
 
     def forward(
         self, gamma: Float[Tensor, "*batch components"]
     ) -> tuple[Float[Tensor, "*batch modes"], Float[Tensor, "*batch appearance"]]:
-        """Alpha and beta of joint coefficients."""
+        """Compute alpha and beta from joint coefficients gamma."""
         both = (self.mean + gamma @ self.basis) * self.units
         return both[..., : len(self.deviations)], both[..., len(self.deviations) :]
 
     def project(
         self, alpha: Float[np.ndarray, "modes"], beta: Float[np.ndarray, "appearance"]
     ) -> Float[np.ndarray, "components"]:
-        """Joint coefficients of one face, by least squares."""
+        """Compute the joint coefficients gamma of one face by least squares."""
         both = np.concatenate([self.weight * alpha / self.deviations, beta])
         return self.statistics.project(both[None], np.ones(both.size, bool))
 
@@ -101,16 +117,25 @@ class JointModel(nn.Module):
     def reconstruct(
         self, gamma: Float[np.ndarray, "components"]
     ) -> tuple[Float[np.ndarray, "modes"], Float[np.ndarray, "appearance"]]:
-        """Alpha and beta of joint coefficients, for arrays."""
+        """Compute alpha and beta from joint coefficients that are arrays."""
         alpha, beta = self(torch.from_numpy(gamma).to(self.mean))
         return alpha.numpy(force=True), beta.numpy(force=True)
 
     def sample(self, count: int, seed: int) -> Float[np.ndarray, "samples components"]:
-        """Joint coefficients of random faces, drawn from N(0, variances)."""
+        """Sample the joint coefficients of random faces from N(0, variances).
+
+        Args:
+            count: number of faces.
+            seed: the same seed gives the same faces, however many follow.
+        """
         return self.statistics.sample(count, seed)
 
     def save(self, path: Path) -> None:
-        """Write the model as .npz, whole or not at all. Raises `InputError` for another suffix."""
+        """Write the model to a .npz file, all of it or nothing.
+
+        Raises:
+            InputError: if the path does not end in .npz or cannot be written.
+        """
         found = self.statistics
         header = {"weight": self.weight, "total": found.total, "subjects": found.subjects}
         arrays = {name: getattr(found, name) for name in _model_arrays.STATISTICS}
@@ -119,7 +144,11 @@ class JointModel(nn.Module):
 
     @classmethod
     def load(cls, path: Path) -> "JointModel":
-        """Read a model. Raises `InputError` for a file that is missing, damaged or another's."""
+        """Read a model that `save` wrote; nothing is unpickled.
+
+        Raises:
+            InputError: if the file is missing, damaged or of another kind.
+        """
         names = (*_model_arrays.STATISTICS, "deviations")
         header, arrays = _model_arrays.read_arrays(path, cls.__name__, names)
         statistics = _model_arrays.build_statistics(path, header, arrays)
@@ -132,9 +161,9 @@ class JointModel(nn.Module):
             raise _model_arrays.make_damage_error(path) from error
 
 
-def equal_weight(
+def _balance(
     scaled: Float[np.ndarray, "subjects modes"], betas: Float[np.ndarray, "subjects components"]
 ) -> float:
-    """The weight that gives shape the total variance of appearance; infinite if shape has none."""
+    """Compute the weight that gives shape the total variance of appearance."""
     shape = float(scaled.var(0).sum())
     return float(np.sqrt(betas.var(0).sum() / shape)) if shape > 0 else np.inf

@@ -5,9 +5,15 @@ from functools import partial
 import numpy as np
 from jaxtyping import Float, Int
 
+from skinnet.appearance._curves import (
+    choose_counts,
+    compute_colour_compactness,
+    compute_generalisation,
+    compute_specificity,
+)
 from skinnet.appearance._mixtures import (
     LeftOut,
-    errors,
+    compute_errors,
     leave_out,
     project_left_out,
     reconstruct_subjects,
@@ -22,14 +28,7 @@ from skinnet.appearance._principal import (
     sample_normal,
 )
 from skinnet.appearance.joint import JointModel
-from skinnet.appearance.measures import (
-    TEXELS,
-    Measures,
-    check_counts,
-    colour_compactness,
-    generalisation,
-    specificity,
-)
+from skinnet.appearance.measures import _TEXELS, Measures
 from skinnet.appearance.stack import SubjectStack
 from skinnet.errors import InputError
 from skinnet.shape.model import ShapeModel
@@ -44,38 +43,61 @@ def measure_joint(
     counts: Int[np.ndarray, "counts"] | None = None,
     samples: int = 100,
     seed: int = 0,
-    texels: int | None = TEXELS,
+    texels: int | None = _TEXELS,
     name: str = "JointModel",
 ) -> Measures:
-    """The measures of a joint model on the people that it was fitted to, in linear RGB and in mm.
+    """Measure a joint model on the people that it was fitted to, in linear RGB and in mm.
 
-    Each model of the others has an appearance model of the others inside, with as many components
-    as `appearance`. Everything else is as for `measure`.
+    Each model that leaves one person out contains an appearance model that leaves the same person
+    out and has as many components as `appearance`.
+
+    Args:
+        joint: the joint model.
+        appearance: the appearance model whose coefficients it was fitted to.
+        stack: the people that both were fitted to.
+        shape: the shape model of the people's shapes.
+        alphas: shape coefficients of the people.
+        counts: numbers of components to measure at; None: all, or 25 in geometric steps.
+        samples: number of random faces for specificity.
+        seed: seed of the random faces.
+        texels: number of texels at which the colours of a hybrid model are compared; None: all.
+        name: name of the model in the result.
+
+    Returns:
+        The measures at each number of components, those of shape in mm.
+
+    Raises:
+        InputError: if the shapes, the people and the models do not match, there are fewer than
+            three people, or models that leave one out cannot have so many components.
     """
     grams = compute_grams(appearance.read_blocks(stack, appearance.mask))
     gram = combine_grams(grams, appearance.statistics.scales)
     _check(joint, shape, alphas, len(gram))
-    surface = _centred_gram(joint.weight * alphas / joint.deviations)
-    counts = check_counts(counts, len(joint.statistics.variances), len(gram))
+    surface = _compute_gram(joint.weight * alphas / joint.deviations)
+    counts = choose_counts(counts, len(joint.statistics.variances), len(gram))
     kept = len(appearance.statistics.variances)
     axes = compute_axes(gram, kept)
-    whole = surface + _truncated(axes)
-    drawn = weigh_samples(
+    whole = surface + _truncate(axes)
+    sampled = weigh_samples(
         whole, sample_normal(samples, len(joint.statistics.variances), seed), counts
     )
-    without = [_joint_left_out(gram, surface, index, kept) for index in range(len(gram))]
+    without = [_leave_out_jointly(gram, surface, index, kept) for index in range(len(gram))]
     left = [project_left_out(products, counts) for products, _ in without]
-    left_colour = [_followed(change, own) for change, (_, own) in zip(left, without, strict=True)]
+    left_colour = [
+        _project_weights(change, own) for change, (_, own) in zip(left, without, strict=True)
+    ]
     colour = appearance.colour_errors(stack, grams, texels)
-    millimetres = partial(errors, _centred_gram(_moved(shape, alphas)))
+    millimetres = partial(compute_errors, _compute_gram(_scale_to_mm(shape, alphas)))
     return Measures(
         name,
         np.cumsum(joint.explained),
-        colour_compactness(counts, _followed(reconstruct_subjects(whole, counts), axes), colour),
-        generalisation(counts, left_colour, colour, "linear RGB"),
-        specificity(counts, _followed(drawn, axes), colour, "linear RGB"),
-        generalisation(counts, left, millimetres, "mm"),
-        specificity(counts, drawn, millimetres, "mm"),
+        compute_colour_compactness(
+            counts, _project_weights(reconstruct_subjects(whole, counts), axes), colour
+        ),
+        compute_generalisation(counts, left_colour, colour, "linear RGB"),
+        compute_specificity(counts, _project_weights(sampled, axes), colour, "linear RGB"),
+        compute_generalisation(counts, left, millimetres, "mm"),
+        compute_specificity(counts, sampled, millimetres, "mm"),
     )
 
 
@@ -95,42 +117,42 @@ def _check(
         )
 
 
-def _joint_left_out(
+def _leave_out_jointly(
     gram: Float[np.ndarray, "subjects subjects"],
     shape_gram: Float[np.ndarray, "subjects subjects"],
     index: int,
     kept: int,
 ) -> tuple[LeftOut, Axes]:
-    """Joint inner products without one subject, and the axes of the others' appearance model."""
+    """Compute the inner products without one person, and the axes of that appearance model."""
     appearance, surface = leave_out(gram, index), leave_out(shape_gram, index)
     axes = compute_axes(appearance.gram, kept)
-    cross = surface.cross + _followed(appearance.cross, axes)
-    return LeftOut(surface.gram + _truncated(axes), cross), axes
+    cross = surface.cross + _project_weights(appearance.cross, axes)
+    return LeftOut(surface.gram + _truncate(axes), cross), axes
 
 
-def _truncated(axes: Axes) -> Float[np.ndarray, "subjects subjects"]:
-    """The Gram matrix that is left of appearance in a model with these axes."""
+def _truncate(axes: Axes) -> Float[np.ndarray, "subjects subjects"]:
+    """Compute the Gram matrix of appearance as a model with these axes keeps it."""
     return np.asarray(axes.vectors * axes.lengths @ axes.vectors.T)
 
 
-def _followed(
+def _project_weights(
     changes: Float[np.ndarray, "*batch subjects"], axes: Axes
 ) -> Float[np.ndarray, "*batch subjects"]:
-    """Changes of weights as a model with these axes can follow them."""
+    """Project changes of weights on the axes of a model."""
     return np.asarray(changes @ axes.vectors @ axes.vectors.T)
 
 
-def _centred_gram(
+def _compute_gram(
     rows: Float[np.ndarray, "subjects values"],
 ) -> Float[np.ndarray, "subjects subjects"]:
     centred = rows - rows.mean(0)
     return np.asarray(centred @ centred.T)
 
 
-def _moved(
+def _scale_to_mm(
     shape: ShapeModel, alphas: Float[np.ndarray, "subjects modes"]
 ) -> Float[np.ndarray, "subjects modes"]:
-    """Alpha in coordinates whose distance is the RMS displacement of a vertex in mm."""
+    """Transform alpha so that distances are RMS displacements of the vertices in mm."""
     basis = shape.basis[: alphas.shape[1]].reshape(alphas.shape[1], -1)
     lengths, directions = np.linalg.eigh(basis @ basis.T)
     scales = np.sqrt(np.maximum(lengths, 0) / len(shape.mean)) * shape.millimetres

@@ -8,7 +8,7 @@ from jaxtyping import Bool, Float, Float32
 from torch import Tensor
 
 from skinnet.appearance._feature_blocks import FeatureBlocks
-from skinnet.appearance._mixtures import Errors, errors
+from skinnet.appearance._mixtures import MixtureErrors, compute_errors
 from skinnet.appearance._model import AppearanceModel
 from skinnet.appearance.colour import SkinColour
 from skinnet.appearance.skin_texture import SkinTexture
@@ -16,7 +16,7 @@ from skinnet.appearance.stack import SubjectStack
 
 
 class _ColourBlocks:
-    """The linear RGB [subjects, 3, columns] of a stack's features."""
+    """`FeatureBlocks` of linear RGB, decoded from those of pigments and offset."""
 
     def __init__(self, features: FeatureBlocks, colour: SkinColour):
         self.features, self.colour = features, colour
@@ -29,22 +29,43 @@ class _ColourBlocks:
 class LinearModel(AppearanceModel):
     """Principal components of linear RGB albedo, as in a classical morphable model.
 
-    The albedo is that of equation 11, which holds exactly for an inverted texture with its offset.
-    Channels are not scaled unless `scales` [3] are given. Where a subject lacks a texel, the colour
-    of the mean features is taken.
+    The albedo comes from Equation 11, which is exact for an inverted texture with its offset.
+    Channels are not scaled unless `scales` [3] are given. Where a subject lacks a texel, the model
+    takes the colour of the mean features.
+
+    Source:
+        Section 5, last paragraph, of Alotaibi & Smith 2017.
+
+    Example:
+        >>> import tempfile
+        >>> from pathlib import Path
+        >>> from skinnet.appearance.colour import SkinColour
+        >>> from skinnet.appearance.stack_writer import write_stack
+        >>> def make(seed: int) -> SkinTexture:
+        ...     maps = np.random.default_rng(seed).uniform(0.02, 0.1, (5, 4, 4)).astype(np.float32)
+        ...     return SkinTexture(maps[0], maps[1], 0.1 * maps[2:].T, np.ones((4, 4), bool))
+        >>> subjects = {str(seed): partial(make, seed) for seed in range(4)}
+        >>> with tempfile.TemporaryDirectory() as folder:
+        ...     stack = write_stack(Path(folder), subjects, SkinColour(nodes=(16, 16)), "example")
+        ...     model = LinearModel.fit(stack)
+        >>> model.reconstruct(model.sample(1, seed=0)[0]).shape
+        (4, 4, 3)
     """
 
     @classmethod
     def read_blocks(cls, stack: SubjectStack, mask: Bool[np.ndarray, "size size"]) -> FeatureBlocks:
+        """Prepare to read linear RGB, inside a mask."""
         return _ColourBlocks(stack.read_blocks(mask), stack.colour)
 
     @classmethod
     def default_scales(
         cls, grams: Float[np.ndarray, "channels subjects subjects"], texels: int
     ) -> Float[np.ndarray, "channels"]:
+        """Leave every channel as it is."""
         return np.ones(len(grams))
 
-    def row(self, texture: SkinTexture) -> Float32[np.ndarray, "channels texels"]:
+    def extract_features(self, texture: SkinTexture) -> Float32[np.ndarray, "channels texels"]:
+        """Compute the linear RGB of one subject."""
         return self.colour.decode(texture.features())
 
     def colour_errors(
@@ -52,11 +73,12 @@ class LinearModel(AppearanceModel):
         stack: SubjectStack,
         grams: Float[np.ndarray, "channels subjects subjects"],
         texels: int | None,
-    ) -> Errors:
-        """RMS differences over the whole mask; inner products suffice, and no texel is decoded."""
-        return partial(errors, grams.sum(0) / self.statistics.mean.size)
+    ) -> MixtureErrors:
+        """Prepare to compute RMS differences over the whole mask from inner products alone."""
+        return partial(compute_errors, grams.sum(0) / self.statistics.mean.size)
 
     def decode(
         self, features: Float[Tensor, "*batch channels texels"]
     ) -> Float[Tensor, "*batch 3 texels"]:
+        """Return the features, which are linear RGB already."""
         return features

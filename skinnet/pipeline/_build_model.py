@@ -11,7 +11,6 @@ import numpy as np
 from jaxtyping import Bool, Float
 from jsonargparse import ArgumentParser, Namespace
 
-from skinnet.appearance._scales import equal_effect
 from skinnet.appearance.hybrid import HybridModel
 from skinnet.appearance.joint import JointModel
 from skinnet.appearance.joint_measures import measure_joint
@@ -184,7 +183,7 @@ def fitted_models(
     stack: SubjectStack, mask: Bool[np.ndarray, "size size"], settings: ModelSettings
 ) -> tuple[HybridModel, LinearModel]:
     """Both models on the same texels of the same people."""
-    scales = equal_effect(stack, mask) if settings.effect else None
+    scales = HybridModel.equal_effect_scales(stack, mask) if settings.effect else None
     hybrid = HybridModel.fit(stack, settings.components, mask, scales)
     return hybrid, LinearModel.fit(stack, settings.components, mask)
 

@@ -12,10 +12,11 @@ from matplotlib.figure import Figure
 from matplotlib.ticker import MaxNLocator
 from PIL import Image
 
+from skinnet.appearance._curves import Curve
 from skinnet.appearance._model import AppearanceModel
 from skinnet.appearance.hybrid import HybridModel
 from skinnet.appearance.linear import LinearModel
-from skinnet.appearance.measures import Curve, Measures
+from skinnet.appearance.measures import Measures
 from skinnet.errors import InputError
 from skinnet.files import write_atomically
 from skinnet.images.srgb import linear_to_srgb, to_uint8

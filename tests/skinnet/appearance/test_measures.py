@@ -8,13 +8,14 @@ import numpy as np
 import pytest
 
 from skinnet.appearance import _feature_blocks
+from skinnet.appearance._curves import space_counts
 from skinnet.appearance._model import AppearanceModel
 from skinnet.appearance.colour import SkinColour
 from skinnet.appearance.hybrid import HybridModel
 from skinnet.appearance.joint import JointModel
 from skinnet.appearance.joint_measures import measure_joint
 from skinnet.appearance.linear import LinearModel
-from skinnet.appearance.measures import default_counts, measure
+from skinnet.appearance.measures import measure
 from skinnet.appearance.skin_texture import SkinTexture
 from skinnet.appearance.stack import SubjectStack
 from skinnet.appearance.stack_writer import write_stack
@@ -216,8 +217,8 @@ def test_two_subjects_are_too_few(
 
 
 def test_default_counts_are_all_or_spaced_by_ratio() -> None:
-    assert default_counts(5).tolist() == [1, 2, 3, 4, 5]
-    many = default_counts(998)
+    assert space_counts(5).tolist() == [1, 2, 3, 4, 5]
+    many = space_counts(998)
     assert len(many) <= 25 and many[0] == 1 and many[-1] == 998 and (np.diff(many) > 0).all()
 
 

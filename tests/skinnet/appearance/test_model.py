@@ -14,7 +14,7 @@ import torch
 
 from benchmarks.appearance import person
 from skinnet.appearance._model import AppearanceModel
-from skinnet.appearance._scales import equal_effect, equal_variance
+from skinnet.appearance._scales import compute_equal_effect, compute_equal_variance
 from skinnet.appearance.colour import SkinColour
 from skinnet.appearance.hybrid import HybridModel
 from skinnet.appearance.linear import LinearModel
@@ -124,8 +124,8 @@ def test_fractions_that_leave_the_unit_interval_are_clamped_and_counted(
 ) -> None:
     model = HybridModel.fit(stack)
     far = 12 * np.sqrt(model.statistics.variances)[None] * np.eye(6)[:1] * [[-1], [1]]
-    assert model.clamped(np.zeros((1, 6))) == 0
-    assert 0.2 < model.clamped(far) <= 1
+    assert model.measure_clamping(np.zeros((1, 6))) == 0
+    assert 0.2 < model.measure_clamping(far) <= 1
     for beta in far:
         face = model.texture(beta)
         assert face.f_mel.min() >= 0 and face.f_blood.max() <= 1
@@ -138,11 +138,11 @@ def test_blocks_have_equal_variance_by_default(stack: SubjectStack) -> None:
     blood, mel, *offset = (features / model.statistics.scales[:, None]).var(0, ddof=1).mean(-1)
     assert np.allclose([blood, mel, sum(offset)], 1, rtol=1e-4)
     assert len(set(model.statistics.scales[2:])) == 1
-    assert equal_variance(np.zeros((5, 3, 3)), 10).min() > 0
+    assert compute_equal_variance(np.zeros((5, 3, 3)), 10).min() > 0
 
 
 def test_features_can_be_weighed_by_their_effect(stack: SubjectStack) -> None:
-    scales = equal_effect(stack)
+    scales = compute_equal_effect(stack)
     assert np.allclose(scales[2:], 1)
     (features,) = stack.read_blocks(stack.cover().mask)
     mean = features.mean((0, 2))

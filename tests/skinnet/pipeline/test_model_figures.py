@@ -8,9 +8,10 @@ import numpy as np
 import pytest
 from PIL import Image
 
+from skinnet.appearance._curves import Curve
 from skinnet.appearance.hybrid import HybridModel
 from skinnet.appearance.linear import LinearModel
-from skinnet.appearance.measures import Curve, Measures
+from skinnet.appearance.measures import Measures
 from skinnet.appearance.stack import SubjectStack
 from skinnet.errors import InputError
 from skinnet.inference import TILE
