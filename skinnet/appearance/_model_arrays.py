@@ -124,8 +124,8 @@ def make_damage_error(path: Path) -> InputError:
 def _check_header(path: Path, kind: str, header: dict[str, Any]) -> None:
     if header["format"] != MODEL_FORMAT:
         raise InputError(
-            f"{path} has format {header['format']}, and this skinnet reads format {MODEL_FORMAT}; make "
-            "it again, or install the skinnet that made it."
+            f"{path} has format {header['format']}, and this skinnet reads format {MODEL_FORMAT}; "
+            "make it again, or install the skinnet that made it."
         )
     if header["kind"] != kind:
         raise InputError(f"{path} is a {header['kind']}, and a {kind} is wanted.")

@@ -59,8 +59,8 @@ def run(config: Namespace) -> int:
         output / "samples.png", draw_grid([tile for row in rows for tile in row], config.count)
     )
     print(
-        f"{output}: {config.count} faces, {model.measure_clamping(betas):.2%} of their texels clipped to a "
-        "fraction in [0, 1]; sample_*_maps.npz, sample_*_albedo.png, samples.png",
+        f"{output}: {config.count} faces, {model.measure_clamping(betas):.2%} of their texels "
+        "clipped to a fraction in [0, 1]; sample_*_maps.npz, sample_*_albedo.png, samples.png",
         flush=True,
     )
     return 0
