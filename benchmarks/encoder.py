@@ -37,7 +37,7 @@ from benchmarks.targets import ASKED, layout, not_beaten
 from skinnet._version import __version__
 from skinnet.errors import InputError
 from skinnet.network.autoencoder import SkinAutoencoder
-from skinnet.network.weights import SHIPPED, load_weights, read_weights
+from skinnet.network._weights import SHIPPED, load_weights, read_weights
 from skinnet.physics import SkinDecoder
 from train.synthetic.faces import Lots, SyntheticFaces
 

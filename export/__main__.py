@@ -76,7 +76,7 @@ def _export(checkpoint: Path, output: Path, half: bool) -> None:
 
 def _load(path: Path) -> "tuple[SkinAutoencoder, str]":
     from skinnet.network.checkpoint import load_checkpoint
-    from skinnet.network.weights import load_weights, read_weights
+    from skinnet.network._weights import load_weights, read_weights
 
     if path.suffix == ".safetensors":
         return load_weights(path), read_weights(path)[0]["skinnet.trained_on"]

@@ -22,7 +22,7 @@ from skinnet.errors import InputError
 from skinnet.files import write_together
 from skinnet.inference import ONNX_FORMAT, get_decoder_path
 from skinnet.network.autoencoder import SkinAutoencoder
-from skinnet.network.weights import save_weights
+from skinnet.network._weights import save_weights
 from skinnet.physics import LIGHTS
 
 OPSET = 20

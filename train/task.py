@@ -17,7 +17,7 @@ from skinnet.network import losses
 from skinnet.network.autoencoder import AutoencoderConfig, Reading, SkinAutoencoder, SkinMaps
 from skinnet.network.checkpoint import describe
 from skinnet.network.encoder import WIDTHS
-from skinnet.network.weights import read_weights
+from skinnet.network._weights import read_weights
 from skinnet.physics import Capture
 from train.batch import Batch
 from train.metrics import measure

@@ -112,7 +112,7 @@ class AutoencoderConfig:
 class SkinAutoencoder(nn.Module):
     """Photograph -> `SkinEncoder` -> `controls` -> `SkinDecoder` -> photograph.
 
-    One forward pass serves training, inference and export. `skinnet.network.weights` saves and
+    One forward pass serves training, inference and export. `skinnet.network._weights` saves and
     loads it.
     """
 

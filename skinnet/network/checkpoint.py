@@ -9,7 +9,7 @@ import torch
 from skinnet._version import __version__
 from skinnet.errors import InputError
 from skinnet.network.autoencoder import FORMAT, AutoencoderConfig, SkinAutoencoder
-from skinnet.network.weights import as_described
+from skinnet.network._weights import as_described
 
 _PREFIX = "model."
 

@@ -14,7 +14,7 @@ from safetensors.torch import save_file
 
 from export.__main__ import main
 from skinnet.network.autoencoder import FORMAT, AutoencoderConfig, SkinAutoencoder
-from skinnet.network.weights import load_weights, read_weights, save_weights
+from skinnet.network._weights import load_weights, read_weights, save_weights
 
 
 @pytest.fixture(scope="module")

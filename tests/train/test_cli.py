@@ -196,7 +196,7 @@ def test_weights_to_start_from_are_their_own_argument(
     fit: Fit, tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
     from skinnet.network.autoencoder import AutoencoderConfig, SkinAutoencoder
-    from skinnet.network.weights import save_weights
+    from skinnet.network._weights import save_weights
 
     start = tmp_path / "start.safetensors"
     save_weights(SkinAutoencoder(AutoencoderConfig(widths=(4, 8))), start, "nothing")

@@ -7,7 +7,7 @@ import pytest
 import torch
 
 from skinnet.inference import SHIPPED_ENCODER, open_model
-from skinnet.network.weights import load_weights
+from skinnet.network._weights import load_weights
 from tools.golden import GOLDEN, numbers, photograph
 
 OUTPUTS = json.loads(GOLDEN.read_text(encoding="utf-8"))

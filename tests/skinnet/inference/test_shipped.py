@@ -11,7 +11,7 @@ from skimage.data import astronaut
 from skinnet import Decomposer, Decomposition
 from skinnet.images import srgb_to_linear
 from skinnet.inference import SHIPPED_ENCODER
-from skinnet.network.weights import SHIPPED, load_weights
+from skinnet.network._weights import SHIPPED, load_weights
 from skinnet.physics import to_display
 
 MODELS = SHIPPED.parent
