@@ -1,32 +1,72 @@
-"""How far a reading is from the truth, in the units a reader knows."""
+"""Errors of readings over a whole data set, in the units of the maps."""
 
 import torch
 from kornia.color import rgb_to_linear_rgb
-from torch import Tensor
+from torch import Tensor, nn
+from torchmetrics import MeanSquaredError, Metric, PearsonCorrCoef
+from torchmetrics.classification import BinaryJaccardIndex
 
-from skinnet.network.autoencoder import Reading
+from skinnet.network import Reading
 from train.batch import Batch
 
-
-def measure(reading: Reading, batch: Batch) -> dict[str, Tensor]:
-    """Errors over skin: `reconstruction` RMSE in linear sRGB, cut off at 1, `mask_iou`, and where
-    there is truth the RMSE of `melanin` and `hemoglobin` in volume fractions, their correlation
-    `_r`, and the RMSE that the best constant would have, `_constant`."""
-    skin = batch.mask > 0.5
-    linear = rgb_to_linear_rgb(batch.photograph)
-    error = ((reading.reconstruction.clamp(0, 1) - linear) ** 2).mean(1)
-    found = {
-        "reconstruction": error[skin].mean().sqrt(),
-        "mask_iou": _overlap(reading.maps.mask > 0.5, skin),
-    }
-    if batch.truth is not None:
-        for name in ("melanin", "hemoglobin"):
-            guess, truth = getattr(reading.maps, name)[skin], getattr(batch.truth, name)[skin]
-            found[name] = ((guess - truth) ** 2).mean().sqrt()
-            found[f"{name}_constant"] = truth.std(correction=0)
-            found[f"{name}_r"] = torch.corrcoef(torch.stack([guess, truth]))[0, 1]
-    return found
+PIGMENTS = ("melanin", "hemoglobin")
 
 
-def _overlap(guess: Tensor, truth: Tensor) -> Tensor:
-    return (guess & truth).sum() / (guess | truth).sum().clamp_min(1)
+class ReadingMetrics(nn.Module):
+    """Errors over the skin of all pictures that one kind of data has shown.
+
+    Pixels are accumulated over batches and processes, so that each counts once. `reconstruction`
+    is the RMSE in linear sRGB, clipped to [0, 1], and `mask_iou` the intersection over union of
+    the masks above one half. Where there is truth, `melanin` and `hemoglobin` are RMSE in volume
+    fractions, `NAME_r` is Pearson's correlation, and `NAME_constant` is the RMSE of the best
+    constant prediction.
+    """
+
+    def __init__(self) -> None:
+        super().__init__()
+        self.metrics = nn.ModuleDict(
+            {"reconstruction": MeanSquaredError(squared=False), "mask_iou": BinaryJaccardIndex()}
+        )
+        for name in PIGMENTS:
+            self.metrics[name] = MeanSquaredError(squared=False)
+            self.metrics[f"{name}_r"] = PearsonCorrCoef()
+            self.metrics[f"{name}_constant"] = StandardDeviation()
+
+    def update(self, reading: Reading, batch: Batch) -> dict[str, Metric]:
+        """Add the pictures of a batch, and return the metrics that they count in, by name."""
+        skin = batch.mask > 0.5
+        image = reading.reconstruction.clamp(0, 1).movedim(1, -1)
+        linear = rgb_to_linear_rgb(batch.photograph).movedim(1, -1)
+        pairs = {"mask_iou": (reading.maps.mask, skin)}
+        # Without skin there is nothing to add, and torchmetrics refuses empty tensors.
+        if skin.any():
+            pairs["reconstruction"] = image[skin], linear[skin]
+            if batch.truth is not None:
+                for name in PIGMENTS:
+                    pair = getattr(reading.maps, name)[skin], getattr(batch.truth, name)[skin]
+                    pairs |= dict.fromkeys((name, f"{name}_r", f"{name}_constant"), pair)
+        for name, pair in pairs.items():
+            self.metrics[name].update(*pair)
+        return {name: metric for name, metric in self.metrics.items() if name in pairs}
+
+
+class StandardDeviation(Metric):
+    """Standard deviation of the targets: the RMSE that their mean has as a prediction."""
+
+    moments: Tensor
+
+    def __init__(self) -> None:
+        super().__init__()
+        zeros = torch.zeros(3, dtype=torch.float64)
+        self.add_state("moments", zeros, dist_reduce_fx="sum")
+
+    def update(self, _: Tensor, target: Tensor) -> None:
+        """Add targets; predictions are ignored."""
+        values = target.to(self.moments)
+        count = torch.full_like(self.moments[0], values.numel())
+        self.moments += torch.stack([count, values.sum(), (values**2).sum()])
+
+    def compute(self) -> Tensor:
+        """Compute the standard deviation of all targets."""
+        count, total, squares = self.moments
+        return (squares / count - (total / count) ** 2).clamp_min(0).sqrt()

@@ -186,9 +186,9 @@ def terms(reading: Reading, batch: Batch) -> dict[str, Tensor]:
     """Every loss that counts on this batch, by its name in `LossWeights`."""
     linear, mask = rgb_to_linear_rgb(batch.photograph), batch.mask
     parts = {
-        "appearance": losses.appearance(reading.reconstruction, linear, mask),
-        "elsewhere": losses.appearance(reading.reconstruction, linear, 1 - mask),
-        "stray": losses.stray(reading.maps, mask),
+        "appearance": losses.appearance_l1(reading.reconstruction, linear, mask),
+        "elsewhere": losses.appearance_l1(reading.reconstruction, linear, 1 - mask),
+        "stray": losses.off_skin_shading(reading.maps, mask),
     }
     if batch.truth is not None and batch.capture is not None:
         return parts | supervised(reading, batch.truth, batch.capture)
@@ -199,26 +199,26 @@ def supervised(reading: Reading, truth: SkinMaps, capture: Capture) -> dict[str,
     """The losses beside a known truth."""
     maps = reading.maps
     return {
-        "mask": losses.skin_mask(maps, truth.mask),
-        "overlap": losses.overlap(maps, truth.mask),
-        "pigments": losses.pigments(maps, truth),
-        "fractions": losses.fractions(maps, truth),
-        "leak": losses.leak(maps, truth),
-        "lighting": losses.lighting(maps, truth),
-        "white_balance": losses.white_balance(reading.capture, capture),
+        "mask": losses.mask_cross_entropy(maps, truth.mask),
+        "overlap": losses.soft_iou(maps, truth.mask),
+        "pigments": losses.pigment_l1(maps, truth),
+        "fractions": losses.pigment_mse(maps, truth),
+        "leak": losses.error_shading_covariance(maps, truth),
+        "lighting": losses.lighting_error(maps, truth),
+        "white_balance": losses.white_balance_l1(reading.capture, capture),
     }
 
 
 def unsupervised(reading: Reading, batch: Batch, linear: Tensor) -> dict[str, Tensor]:
     """The priors that stand in for a truth; `linear` is the photograph in linear sRGB."""
     maps, mask = reading.maps, batch.mask
-    parts = {"steadiness": losses.steadiness(maps, mask)} if batch.twice else {}
+    parts = {"steadiness": losses.augmentation_consistency(maps, mask)} if batch.twice else {}
     return parts | {
-        "mask_guess": losses.skin_mask(maps, mask),
+        "mask_guess": losses.mask_cross_entropy(maps, mask),
         "camera": losses.camera_prior(reading.capture),
         "specular": losses.specular_sparsity(maps, mask),
         "smoothness": losses.shading_smoothness(maps, mask),
-        "shading": losses.shading_pseudo(maps, linear, mask),
+        "shading": losses.shading_from_luminance(maps, linear, mask),
     }
 
 

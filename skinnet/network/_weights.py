@@ -1,10 +1,10 @@
 """Weights of an autoencoder as one safetensors file, with what is needed to rebuild it."""
 
 import json
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
-from dataclasses import asdict
 from pathlib import Path
+from typing import Any, NamedTuple
 
 from safetensors import SafetensorError, safe_open
 from safetensors.torch import save
@@ -13,52 +13,43 @@ from torch import Tensor
 from skinnet._version import __version__
 from skinnet.errors import InputError
 from skinnet.files import write_atomically
-from skinnet.network.autoencoder import FORMAT, AutoencoderConfig, SkinAutoencoder
+
+WEIGHTS_FORMAT = 3
+"""Version of weights and checkpoints: raise it with every change to what a weight means."""
 
 KIND = "autoencoder"
-SHIPPED = Path(__file__).parents[1] / "inference" / "models" / "skin.safetensors"
+SHIPPED_WEIGHTS = Path(__file__).parents[1] / "inference" / "models" / "skin.safetensors"
 
 
-def save_weights(model: SkinAutoencoder, path: str | Path, trained_on: str) -> None:
-    """Write the weights and the configuration of `model`; `trained_on` says what made them."""
+class SavedModel(NamedTuple):
+    """What a file holds of a model: fields of its configuration, its origin, and its weights."""
+
+    config: Mapping[str, Any]
+    trained_on: str
+    state: dict[str, Tensor]
+
+
+def write_weights(saved: SavedModel, path: Path) -> None:
+    """Write a model as a safetensors file."""
     metadata = {
         "skinnet.kind": KIND,
-        "skinnet.format": str(FORMAT),
+        "skinnet.format": str(WEIGHTS_FORMAT),
         "skinnet.version": __version__,
-        "skinnet.config": json.dumps(asdict(model.config)),
-        "skinnet.trained_on": trained_on,
+        "skinnet.config": json.dumps(saved.config),
+        "skinnet.trained_on": saved.trained_on,
     }
-    state = {name: value.detach().cpu().contiguous() for name, value in model.state_dict().items()}
-    with write_atomically(Path(path)) as part:
+    state = {name: value.detach().cpu().contiguous() for name, value in saved.state.items()}
+    with write_atomically(path) as part:
         part.write_bytes(save(state, metadata))
 
 
-def load_weights(path: str | Path = SHIPPED) -> SkinAutoencoder:
-    """The autoencoder saved at `path`, in evaluation mode; without a path, the shipped one.
+def read_weights(path: Path) -> SavedModel:
+    """Read a model from a safetensors file.
 
-    Raises `InputError` for a file that is missing, truncated, not ours or of another format.
+    Raises:
+        InputError: for a file that is missing, truncated, of another format or not of skinnet.
     """
-    metadata, state = read_weights(path)
-    with as_described(path):
-        fields = json.loads(metadata["skinnet.config"])
-        config = AutoencoderConfig(**{**fields, "widths": tuple(fields["widths"])})
-        model = SkinAutoencoder(config)
-        model.load_state_dict(state)
-    return model.eval()
-
-
-@contextmanager
-def as_described(path: str | Path) -> Iterator[None]:
-    """Turns what goes wrong in rebuilding the model of a file into `InputError`."""
-    try:
-        yield
-    except (KeyError, TypeError, ValueError, RuntimeError) as error:
-        raise InputError(f"{path} does not hold the model that it describes.") from error
-
-
-def read_weights(path: str | Path) -> tuple[dict[str, str], dict[str, Tensor]]:
-    """Metadata and tensors of a weights file, checked to be ours."""
-    if not Path(path).is_file():
+    if not path.is_file():
         raise InputError(f"{path} is not a file; give the path of a .safetensors file.")
     try:
         with safe_open(str(path), framework="pt") as file:
@@ -68,9 +59,20 @@ def read_weights(path: str | Path) -> tuple[dict[str, str], dict[str, Tensor]]:
         raise InputError(f"{path} is no complete safetensors file ({error}).") from error
     if metadata.get("skinnet.kind") != KIND:
         raise InputError(f"{path} holds no skinnet weights; it was written by something else.")
-    if metadata.get("skinnet.format") != str(FORMAT):
+    if metadata.get("skinnet.format") != str(WEIGHTS_FORMAT):
         raise InputError(
-            f"{path} has format {metadata.get('skinnet.format')}, this skinnet reads {FORMAT}; "
-            f"it was written by version {metadata.get('skinnet.version')}."
+            f"{path} has format {metadata.get('skinnet.format')}, this skinnet reads "
+            f"{WEIGHTS_FORMAT}; it was written by version {metadata.get('skinnet.version')}."
         )
-    return metadata, state
+    with refuse_mismatch(path):
+        config = json.loads(metadata["skinnet.config"])
+        return SavedModel(config, metadata["skinnet.trained_on"], state)
+
+
+@contextmanager
+def refuse_mismatch(path: Path) -> Iterator[None]:
+    """Turn an error of rebuilding a model from its description into `InputError`."""
+    try:
+        yield
+    except (KeyError, TypeError, ValueError, RuntimeError) as error:
+        raise InputError(f"{path} does not hold the model that it describes.") from error

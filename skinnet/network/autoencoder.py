@@ -1,23 +1,29 @@
-"""Encoder, controls and decoder: a photograph to skin and back."""
+"""Encoder, output activations and decoder: a photograph to skin and back."""
 
-from dataclasses import dataclass
-from typing import NamedTuple
+from dataclasses import asdict, dataclass
+from pathlib import Path
+from typing import Any, NamedTuple
 
 import torch
 from jaxtyping import Float
 from kornia.color import rgb_to_linear_rgb
 from torch import Tensor, nn
 
+from skinnet.network._weights import (
+    SHIPPED_WEIGHTS,
+    SavedModel,
+    read_weights,
+    refuse_mismatch,
+    write_weights,
+)
+from skinnet.network.checkpoint import _describe, _make_checkpoint, _read_model
 from skinnet.network.encoder import WIDTHS, SkinEncoder
 from skinnet.physics.camera import CAMERA_COMPONENTS, LIGHTS
 from skinnet.physics.capture import Capture
 from skinnet.physics.decoder import SkinDecoder
 
-FORMAT = 3
-"""Version of weights and checkpoints: raise it with every change to what a weight means."""
-
 F_MEL_MAX = 0.43
-"""Largest melanosome volume fraction of the paper's Table 1."""
+"""Largest melanosome volume fraction (Table 1 of Alotaibi & Smith 2017)."""
 
 F_BLOOD_MAX = 0.15
 """Twice the paper's 7 %: lips and flushed cheeks hold more blood than other skin."""
@@ -25,20 +31,27 @@ F_BLOOD_MAX = 0.15
 SHADING_MAX = 4.0
 CAMERA_MAX = 3.0
 WHITE_BALANCE_MAX = 0.4
-MIRED = (40.0, 250.0)
-"""Daylight in units in which its change is even to the eye, 25,000 K to 4,000 K."""
 
-MAPS = 5
-GLOBALS = len(LIGHTS) + 1 + CAMERA_COMPONENTS + 2
+_MIRED = (40.0, 250.0)
+"""Range of daylight, 25,000 K to 4,000 K, in mired: equal steps look about equally large."""
+
+_MAP_CHANNELS = 5
+_GLOBAL_CHANNELS = len(LIGHTS) + 1 + CAMERA_COMPONENTS + 2
 
 
 class SkinMaps(NamedTuple):
     """What each pixel of a photograph shows.
 
-    `melanin`, `hemoglobin`: melanosome and blood volume fractions, in [0, 0.43] and [0, 0.15].
-    `shading`: diffuse shading relative to the light, in [0, 4]. `specular`: in [0, 1] of the
-    light. `offset`: linear sRGB of what is not skin, in [-1, 1] (delta of the paper's equation
-    11); what the encoder reads is in [0, 1]. `mask`: probability that the pixel is skin.
+    Attributes:
+        melanin: Melanosome volume fraction, in [0, 0.43].
+        hemoglobin: Blood volume fraction, in [0, 0.15].
+        shading: Diffuse shading relative to the light, in [0, 4].
+        specular: Specular reflection relative to the light, in [0, 1].
+        offset: What skin does not explain, in linear sRGB, in [-1, 1]; the encoder's is in [0, 1].
+        mask: Probability that the pixel is skin, in [0, 1].
+
+    Source:
+        Equations 4 and 11 of Alotaibi & Smith 2017; `offset` is delta of equation 11.
     """
 
     melanin: Float[Tensor, "*batch height width"]
@@ -49,21 +62,21 @@ class SkinMaps(NamedTuple):
     mask: Float[Tensor, "*batch height width"]
 
 
-def controls(
+def _activate(
     maps: Float[Tensor, "batch 5 height width"],
-    globals: Float[Tensor, "batch globals"],
+    global_outputs: Float[Tensor, "batch globals"],
     linear: Float[Tensor, "batch 3 height width"],
 ) -> tuple[SkinMaps, Capture]:
-    """Raw outputs of the encoder mapped smoothly to physical ranges, in float32 at least.
+    """Map raw encoder outputs smoothly to physical ranges, in float32 at least.
 
-    Pigments are cubes of a sigmoid: even steps of the cube root of a fraction are about even steps
-    of colour, and both ends of the range can be reached. The offset is the photograph, `linear` in
-    linear sRGB, by the share that the mask leaves: skin is explained by skin, the rest by itself.
+    Pigments are cubes of a sigmoid. Equal steps of the cube root of a fraction are about equal
+    steps of colour, and both ends of the range can be reached. The offset is the photograph,
+    `linear` in linear sRGB, times the probability that the pixel is not skin.
     """
-    maps, globals = _at_least_float32(maps), _at_least_float32(globals)
+    maps, global_outputs = _at_least_float32(maps), _at_least_float32(global_outputs)
     melanin, hemoglobin, shading, specular, mask = maps.unbind(1)
-    light, temperature, camera, balance = globals.split([len(LIGHTS), 1, CAMERA_COMPONENTS, 2], -1)
-    mired = MIRED[0] + (MIRED[1] - MIRED[0]) * temperature.squeeze(-1).sigmoid()
+    light, temperature, camera, balance = global_outputs.split([len(LIGHTS), 1, CAMERA_COMPONENTS, 2], -1)
+    mired = _MIRED[0] + (_MIRED[1] - _MIRED[0]) * temperature.squeeze(-1).sigmoid()
     capture = Capture(
         light.softmax(-1),
         1e6 / mired,
@@ -71,17 +84,17 @@ def controls(
         WHITE_BALANCE_MAX * balance.tanh(),
     )
     skin = mask.sigmoid()
-    # Detached, or a photograph would be explained best by finding no skin in it.
-    rest = (1 - skin.detach())[:, None] * linear
-    found = SkinMaps(
+    # Detached, or the best explanation of every photograph would be that it shows no skin.
+    offset = (1 - skin.detach())[:, None] * linear
+    activated = SkinMaps(
         F_MEL_MAX * melanin.sigmoid() ** 3,
         F_BLOOD_MAX * hemoglobin.sigmoid() ** 3,
         SHADING_MAX * (shading - 1.1).sigmoid(),
         (specular - 4).sigmoid(),
-        rest,
+        offset,
         skin,
     )
-    return found, capture
+    return activated, capture
 
 
 def _at_least_float32(value: Tensor) -> Tensor:
@@ -89,7 +102,13 @@ def _at_least_float32(value: Tensor) -> Tensor:
 
 
 class Reading(NamedTuple):
-    """A photograph read as skin: its maps, its capture, and the photograph made from them."""
+    """A photograph read as skin.
+
+    Attributes:
+        maps: What each pixel shows.
+        capture: Light and camera of the photograph.
+        reconstruction: The photograph made from maps and capture, in linear sRGB, not clipped.
+    """
 
     maps: SkinMaps
     capture: Capture
@@ -100,8 +119,10 @@ class Reading(NamedTuple):
 class AutoencoderConfig:
     """What a `SkinAutoencoder` is built from.
 
-    `optics` names a preset, `widths` are the encoder's channels at each level, and `working_size`
-    is the longer side, in pixels, of the crops that the weights are trained on.
+    Attributes:
+        optics: Name of a preset of `SkinOptics`.
+        widths: Channels of the encoder at each level.
+        working_size: Longer side, in pixels, of the crops that the weights are trained on.
     """
 
     optics: str = "calibrated"
@@ -110,30 +131,127 @@ class AutoencoderConfig:
 
 
 class SkinAutoencoder(nn.Module):
-    """Photograph -> `SkinEncoder` -> `controls` -> `SkinDecoder` -> photograph.
+    """Reads photographs as skin, and makes photographs from what was read.
 
-    One forward pass serves training, inference and export. `skinnet.network._weights` saves and
-    loads it.
+    Photograph -> `SkinEncoder` -> output activations -> `SkinDecoder` -> photograph. One forward
+    pass serves training, inference and export.
+
+    Args:
+        config: Sizes of the network and the optics of skin; the defaults are `AutoencoderConfig()`.
+
+    Attributes:
+        config: What the model was built from.
+        trained_on: One line on the training data, which files of the model carry.
+
+    Source:
+        Alotaibi & Smith, "BioFaceNet", BMVC 2019, for the idea of an encoder with a physical
+        decoder.
+
+    Example:
+        >>> model = SkinAutoencoder.from_pretrained()
+        >>> with torch.no_grad():
+        ...     reading = model(torch.full((1, 3, 64, 64), 0.5))
+        >>> reading.maps.melanin.shape
+        torch.Size([1, 64, 64])
     """
 
-    def __init__(self, config: AutoencoderConfig | None = None):
+    def __init__(self, config: AutoencoderConfig | None = None) -> None:
         super().__init__()
         self.config = config or AutoencoderConfig()
-        self.encoder = SkinEncoder(MAPS, GLOBALS, self.config.widths)
+        self.trained_on = ""
+        self.encoder = SkinEncoder(_MAP_CHANNELS, _GLOBAL_CHANNELS, self.config.widths)
         self.decoder = SkinDecoder(self.config.optics)
 
+    @classmethod
+    def from_pretrained(cls, path: str | Path | None = None) -> "SkinAutoencoder":
+        """Load a trained model, in evaluation mode.
+
+        Args:
+            path: A .safetensors file, or a .ckpt of training. By default the shipped weights.
+
+        Returns:
+            The model, on the CPU.
+
+        Raises:
+            InputError: for a file that is missing, truncated, of another format or not of skinnet.
+
+        Example:
+            >>> SkinAutoencoder.from_pretrained().config.working_size
+            160
+        """
+        file = SHIPPED_WEIGHTS if path is None else Path(path)
+        saved = read_weights(file) if file.suffix == ".safetensors" else _read_model(file)
+        with refuse_mismatch(file):
+            widths = tuple(saved.config["widths"])
+            model = cls(AutoencoderConfig(**{**saved.config, "widths": widths}))
+            model.load_state_dict(saved.state)
+        model.trained_on = saved.trained_on
+        return model.eval()
+
+    def save_pretrained(self, path: str | Path) -> None:
+        """Write weights and configuration as one file, which `from_pretrained` reads.
+
+        Args:
+            path: The .safetensors file to write.
+        """
+        write_weights(self._saved(), Path(path))
+
+    def describe(self) -> dict[str, Any]:
+        """Describe the model in primitives, as checkpoints do.
+
+        Returns:
+            Format, version, optics, widths, working size, and the training data.
+        """
+        return _describe(self._saved())
+
+    def make_checkpoint(self) -> dict[str, Any]:
+        """Make a checkpoint of the model alone, which training cannot continue from.
+
+        Returns:
+            What `torch.save` writes and `from_pretrained` reads.
+        """
+        return _make_checkpoint(self._saved())
+
+    def _saved(self) -> SavedModel:
+        return SavedModel(asdict(self.config), self.trained_on, self.state_dict())
+
     def forward(self, photograph: Float[Tensor, "batch 3 height width"]) -> Reading:
-        """Read photographs in display sRGB, in [0, 1]; the reconstruction is linear sRGB."""
+        """Read photographs, and make them again from what was read.
+
+        Args:
+            photograph: Display sRGB in [0, 1].
+
+        Returns:
+            Maps, capture and reconstruction; the reconstruction is linear sRGB.
+        """
         maps, capture = self.encode(photograph)
         return Reading(maps, capture, self.decode(maps, capture))
 
     def encode(self, photograph: Float[Tensor, "batch 3 height width"]) -> tuple[SkinMaps, Capture]:
-        """The maps and the capture alone; this half may run in lower precision."""
+        """Read maps and capture; this half may run in lower precision.
+
+        Args:
+            photograph: Display sRGB in [0, 1].
+
+        Returns:
+            Maps and capture.
+        """
         linear = rgb_to_linear_rgb(photograph)
-        maps, globals = self.encoder(photograph, linear)
-        return controls(maps, globals, linear)
+        maps, global_outputs = self.encoder(photograph, linear)
+        return _activate(maps, global_outputs, linear)
 
     def decode(self, maps: SkinMaps, capture: Capture) -> Float[Tensor, "batch 3 height width"]:
-        """Linear sRGB of maps and capture; this half needs float32."""
+        """Make photographs from maps and capture; this half needs float32.
+
+        Args:
+            maps: What each pixel shows.
+            capture: Light and camera of each photograph.
+
+        Returns:
+            Linear sRGB, not clipped.
+
+        Source:
+            Equations 4 and 11 of Alotaibi & Smith 2017.
+        """
         pixels = (maps.melanin, maps.hemoglobin, maps.shading, maps.specular, maps.offset)
         return self.decoder.compose(*pixels, capture)

@@ -1,4 +1,4 @@
-"""Checkpoints of training: what in them is ours, and reading them without running anything."""
+"""Checkpoints of training, read without running any code from them."""
 
 import pickle
 from pathlib import Path
@@ -8,35 +8,31 @@ import torch
 
 from skinnet._version import __version__
 from skinnet.errors import InputError
-from skinnet.network.autoencoder import FORMAT, AutoencoderConfig, SkinAutoencoder
-from skinnet.network._weights import as_described
+from skinnet.network._weights import WEIGHTS_FORMAT, SavedModel, refuse_mismatch
 
 _PREFIX = "model."
 
 
-def describe(config: AutoencoderConfig, trained_on: str) -> dict[str, Any]:
-    """The entry `skinnet` of a checkpoint, in primitives."""
-    return {
-        "format": FORMAT,
-        "version": __version__,
-        "optics": config.optics,
-        "widths": list(config.widths),
-        "working_size": config.working_size,
-        "trained_on": trained_on,
-    }
-
-
-def checkpoint_of(model: SkinAutoencoder, trained_on: str) -> dict[str, Any]:
-    """What of a checkpoint `load_checkpoint` needs; training does not go on with it."""
-    state = {f"{_PREFIX}{name}": value for name, value in model.state_dict().items()}
-    return {"skinnet": describe(model.config, trained_on), "state_dict": state}
-
-
 def read_checkpoint(path: str | Path) -> dict[str, Any]:
-    """A checkpoint, loaded with `weights_only`.
+    """Load a checkpoint of training with `weights_only`.
 
-    Raises `InputError` for a file that is missing, truncated, not ours or of another version.
-    """
+    `SkinAutoencoder.from_pretrained` makes a model from it.
+
+    Args:
+        path: A .ckpt file, such as RUN/best.ckpt.
+
+    Returns:
+        The checkpoint as Lightning wrote it. Its entry `skinnet` describes the model.
+
+    Raises:
+        InputError: for a file that is missing, truncated, of another format or not of skinnet.
+
+    Example:
+        >>> read_checkpoint("absent.ckpt")
+        Traceback (most recent call last):
+        ...
+        skinnet.errors.InputError: absent.ckpt is not a checkpoint file; give one, such as RUN/best.ckpt.
+    """  # noqa: E501 - a message of one line
     if not Path(path).is_file():
         raise InputError(f"{path} is not a checkpoint file; give one, such as RUN/best.ckpt.")
     try:
@@ -45,25 +41,40 @@ def read_checkpoint(path: str | Path) -> dict[str, Any]:
         raise InputError(
             f"{path} is no whole checkpoint; give one that training wrote: RUN/best.ckpt."
         ) from error
-    note = checkpoint.get("skinnet") if isinstance(checkpoint, dict) else None
-    if not isinstance(note, dict):
+    description = checkpoint.get("skinnet") if isinstance(checkpoint, dict) else None
+    if not isinstance(description, dict):
         raise InputError(f"{path} is not a checkpoint of skinnet; something else wrote it.")
-    if note.get("format") != FORMAT:
+    if description.get("format") != WEIGHTS_FORMAT:
         raise InputError(
-            f"{path} has format {note.get('format')}, this skinnet reads {FORMAT}; it was written "
-            f"by version {note.get('version')}."
+            f"{path} has format {description.get('format')}, this skinnet reads {WEIGHTS_FORMAT}; "
+            f"it was written by version {description.get('version')}."
         )
     return dict(checkpoint)
 
 
-def load_checkpoint(path: str | Path) -> tuple[SkinAutoencoder, str]:
-    """The model of a checkpoint, in evaluation mode, and what it was trained on."""
+def _read_model(path: Path) -> SavedModel:
+    """The model in a checkpoint of training."""
     checkpoint = read_checkpoint(path)
-    note = checkpoint["skinnet"]
-    with as_described(path):
-        config = AutoencoderConfig(note["optics"], tuple(note["widths"]), note["working_size"])
-        model = SkinAutoencoder(config)
+    with refuse_mismatch(path):
+        description = checkpoint["skinnet"]
+        config = {name: description[name] for name in ("optics", "widths", "working_size")}
         entries = checkpoint["state_dict"].items()
         state = {name.removeprefix(_PREFIX): v for name, v in entries if name.startswith(_PREFIX)}
-        model.load_state_dict(state)
-        return model.eval(), note["trained_on"]
+        return SavedModel(config, description["trained_on"], state)
+
+
+def _describe(saved: SavedModel) -> dict[str, Any]:
+    """The entry `skinnet` of a checkpoint, in primitives."""
+    return {
+        "format": WEIGHTS_FORMAT,
+        "version": __version__,
+        **saved.config,
+        "widths": list(saved.config["widths"]),
+        "trained_on": saved.trained_on,
+    }
+
+
+def _make_checkpoint(saved: SavedModel) -> dict[str, Any]:
+    """A checkpoint that holds a model and nothing of its training."""
+    state = {f"{_PREFIX}{name}": value for name, value in saved.state.items()}
+    return {"skinnet": _describe(saved), "state_dict": state}

@@ -1,6 +1,7 @@
-"""The convolutional encoder: a photograph to raw maps and raw globals."""
+"""The convolutional encoder: a photograph to its maps and its capture, without units yet."""
 
 from itertools import pairwise
+from typing import Any
 
 import torch
 import torch.nn.functional as F
@@ -11,33 +12,68 @@ from skinnet.errors import InputError
 
 WIDTHS = (24, 40, 80, 128, 160)
 
-HEAD = 24
+_HEAD_CHANNELS = 24
 """Channels of the head, which alone works at the photograph's own resolution."""
 
-GATHERED = 8
-"""Places in the photograph whose colours the scene is told."""
+_POOLED_COLOURS = 8
+"""Attention maps, each of which pools one colour of the photograph."""
 
-VOTING = 32
-"""Channels from which attention, and the chroma that a place should have, are read."""
+_ATTENTION_CHANNELS = 32
+"""Channels from which attention and the expected chroma are computed."""
 
-_PIXEL = 9
+_PIXEL_CHANNELS = 9
 _DARKEST = 4e-3
+
+_EARLIER_NAMES = {
+    "scene.": "context.",
+    "back.": "broadcast.",
+    "gather.look.": "pooling.conv.",
+    "gather.attend.": "pooling.attention.",
+    "gather.expect.": "pooling.expected_chroma.",
+    "weigh.": "refine.",
+    "globals.": "global_outputs.",
+    "balanced.": "white_balance.",
+    "head.look.": "head.conv.",
+    "head.mixed.": "head.norm.",
+}
+"""Prefixes of weights in files of version 0.1, and what they are called today."""
 
 
 class SkinEncoder(nn.Module):
-    """A U-Net from half the photograph's resolution down, and a head at its own.
+    """Computes raw maps and raw global values from a photograph of any size.
 
-    The head sees display values, linear ones and their logarithms, in which pigments are nearly
-    linear, and is modulated by what the deepest level makes of the whole scene: how a colour reads
-    depends on the light. What votes make of the light's tint reaches the globals directly as well.
-    Outputs get their meaning and range from `controls`.
+    A U-Net works from half the photograph's resolution down, and a head works at full resolution.
+    The head sees display values, linear values and their logarithms, in which pigments are nearly
+    linear. It is modulated by a context vector of the whole photograph, because how a colour reads
+    depends on the light. A confidence-weighted vote on the light's tint is also added to the global
+    values directly. `SkinAutoencoder` gives the outputs their meaning and range.
 
-    Any size from 1 x 1 up: halvings round up, and features are brought to the size of the level
-    above, so nothing is padded or cropped. `maps` and `globals` are the numbers of output channels
-    and `widths` the channels of each level.
+    Halvings round up, and features are resized to those of the level above. So no size is padded or
+    cropped.
+
+    Args:
+        map_channels: Number of output maps.
+        global_channels: Number of output values of the whole photograph.
+        widths: Channels of the U-Net at each level, finest first.
+
+    Raises:
+        InputError: if `widths` is empty.
+
+    Source:
+        Ronneberger et al. 2015 (U-Net); Perez et al. 2018 (FiLM, the modulation of the head); Hu et
+        al. 2017 (FC4, the confidence-weighted vote).
+
+    Example:
+        >>> encoder = SkinEncoder(map_channels=5, global_channels=18, widths=(4, 8)).eval()
+        >>> photograph = torch.rand(1, 3, 17, 33)
+        >>> maps, global_outputs = encoder(photograph, photograph**2.2)
+        >>> maps.shape, global_outputs.shape
+        (torch.Size([1, 5, 17, 33]), torch.Size([1, 18]))
     """
 
-    def __init__(self, maps: int, globals: int, widths: tuple[int, ...] = WIDTHS):
+    def __init__(
+        self, map_channels: int, global_channels: int, widths: tuple[int, ...] = WIDTHS
+    ) -> None:
         super().__init__()
         if not widths:
             raise InputError(
@@ -47,100 +83,128 @@ class SkinEncoder(nn.Module):
         self.stem = _stage(3, widths[0], stride=2)
         pairs = list(pairwise(widths))
         self.down = nn.ModuleList(_stage(fine, coarse, stride=2) for fine, coarse in pairs)
-        self.scene = nn.Sequential(nn.Linear(2 * deepest, deepest), nn.ReLU())
-        self.back = nn.Linear(deepest, deepest)
-        self.gather = _Gather(widths[0])
-        self.weigh = nn.Sequential(
-            nn.Linear(deepest + 3 * GATHERED + 2, deepest), nn.ReLU(), nn.Linear(deepest, deepest)
+        self.context = nn.Sequential(nn.Linear(2 * deepest, deepest), nn.ReLU())
+        self.broadcast = nn.Linear(deepest, deepest)
+        self.pooling = _AttentionPooling(widths[0])
+        self.refine = nn.Sequential(
+            nn.Linear(deepest + 3 * _POOLED_COLOURS + 2, deepest),
+            nn.ReLU(),
+            nn.Linear(deepest, deepest),
         )
-        self.globals = nn.Linear(deepest, globals)
-        self.balanced = nn.Linear(2, globals, bias=False)
+        self.global_outputs = nn.Linear(deepest, global_channels)
+        self.white_balance = nn.Linear(2, global_channels, bias=False)
         self.up = nn.ModuleList(_Merge(coarse, fine) for fine, coarse in reversed(pairs))
-        self.head = _Head(widths[0], deepest, maps)
+        self.head = _Head(widths[0], deepest, map_channels)
+        self.register_load_state_dict_pre_hook(_rename_earlier_weights)
 
     def forward(
         self,
         srgb: Float[Tensor, "batch 3 height width"],
         linear: Float[Tensor, "batch 3 height width"],
-    ) -> tuple[Float[Tensor, "batch maps height width"], Float[Tensor, "batch globals"]]:
-        """Raw maps and globals of display sRGB in [0, 1] and the same photograph in linear sRGB."""
+    ) -> tuple[
+        Float[Tensor, "batch map_channels height width"], Float[Tensor, "batch global_channels"]
+    ]:
+        """Compute raw maps and raw global values.
+
+        Args:
+            srgb: Photographs in display sRGB, in [0, 1].
+            linear: The same photographs in linear sRGB.
+
+        Returns:
+            Raw maps and raw global values, unbounded and without unit.
+        """
         features = [self.stem(4 * srgb - 2)]
         for stage in self.down:
             features.append(stage(features[-1]))
         x = features.pop()
-        scene = self.scene(torch.cat([x.mean((-2, -1)), x.amax((-2, -1))], 1))
-        x = x + self.back(scene)[..., None, None]
+        context = self.context(torch.cat([x.mean((-2, -1)), x.amax((-2, -1))], 1))
+        x = x + self.broadcast(context)[..., None, None]
         for merge in self.up:
             x = merge(x, features.pop())
         log = torch.log(linear + _DARKEST)
-        colours, balance = self.gather(x, log)
-        scene = scene + self.weigh(torch.cat([scene, colours, balance], 1))
+        colours, tint = self.pooling(x, log)
+        context = context + self.refine(torch.cat([context, colours, tint], 1))
         pixel = torch.cat([srgb, linear, 0.5 * log], 1)
-        return self.head(pixel, x, scene), self.globals(scene) + self.balanced(balance)
+        global_outputs = self.global_outputs(context) + self.white_balance(tint)
+        return self.head(pixel, x, context), global_outputs
 
 
-class _Gather(nn.Module):
-    """The mean log colours of places that the network attends to, and the light's tint.
+def _rename_earlier_weights(
+    module: nn.Module, state_dict: dict[str, Any], prefix: str, *_: object
+) -> None:
+    """Rename the weights of a file of version 0.1 in place, before they are loaded."""
+    for name in [name for name in state_dict if name.startswith(prefix)]:
+        for earlier, today in _EARLIER_NAMES.items():
+            if name.startswith(prefix + earlier):
+                rest = name.removeprefix(prefix + earlier)
+                state_dict[f"{prefix}{today}{rest}"] = state_dict.pop(name)
 
-    The white of an eye, a shirt or a grey wall tells the white balance, which an average of
-    features blurs. Each place has the chroma that it should have taken off its own, and a vote as
-    strong as the network trusts it (Hu et al. 2017, FC4).
+
+class _AttentionPooling(nn.Module):
+    """Mean log colours under attention, and a confidence-weighted vote on the light's tint.
+
+    The white of an eye, a shirt or a grey wall shows the white balance, which an average of
+    features blurs. The network predicts the chroma that each pixel has under neutral light. What
+    remains of the pixel's chroma is its vote, weighted by the network's confidence (Hu et al. 2017,
+    FC4).
     """
 
-    def __init__(self, features: int):
+    def __init__(self, features: int) -> None:
         super().__init__()
-        self.look = nn.Conv2d(features + 3, VOTING, 3, padding=1)
-        self.attend = nn.Conv2d(VOTING, GATHERED + 1, 1)
-        self.expect = nn.Conv2d(VOTING, 2, 1)
+        self.conv = nn.Conv2d(features + 3, _ATTENTION_CHANNELS, 3, padding=1)
+        self.attention = nn.Conv2d(_ATTENTION_CHANNELS, _POOLED_COLOURS + 1, 1)
+        self.expected_chroma = nn.Conv2d(_ATTENTION_CHANNELS, 2, 1)
 
     def forward(
         self,
         features: Float[Tensor, "batch f h w"],
         log: Float[Tensor, "batch 3 height width"],
-    ) -> tuple[Float[Tensor, "batch gathered"], Float[Tensor, "batch 2"]]:
-        """Colours of the places, and the votes' log R/G and log B/G in units of a tenth."""
+    ) -> tuple[Float[Tensor, "batch colours"], Float[Tensor, "batch 2"]]:
+        """Pooled log colours, and log R/G and log B/G of the light in units of a tenth."""
         small = F.interpolate(log, size=features.shape[-2:], mode="bilinear")
-        seen = self.look(torch.cat([features, small], 1)).relu()
-        attention = self.attend(seen).flatten(2).softmax(-1).float()
-        places, voters = attention.split([GATHERED, 1], 1)
-        chroma = 10 * (small[:, ::2] - small[:, 1:2]) - self.expect(seen)
-        # Sums, for matrix products would run in the trunk's precision, and light in an image is
-        # known to better than eight bits.
-        colours = (places[:, :, None] * small.flatten(2)[:, None]).sum(-1)
-        return colours.flatten(1), (voters * chroma.flatten(2)).sum(-1)
+        x = self.conv(torch.cat([features, small], 1)).relu()
+        attention = self.attention(x).flatten(2).softmax(-1).float()
+        weights, confidence = attention.split([_POOLED_COLOURS, 1], 1)
+        chroma = 10 * (small[:, ::2] - small[:, 1:2]) - self.expected_chroma(x)
+        # Sums rather than matrix products, which autocast would compute with eight bits; the tint
+        # is known more precisely than that.
+        colours = (weights[:, :, None] * small.flatten(2)[:, None]).sum(-1)
+        return colours.flatten(1), (confidence * chroma.flatten(2)).sum(-1)
 
 
 class _Head(nn.Module):
-    """A pixel and the features around it to its maps, modulated by the scene (FiLM, Perez et al.
-    2018)."""
+    """Maps of a pixel from its colour and the features around it, modulated by the context.
 
-    def __init__(self, features: int, scene: int, maps: int):
+    The modulation is FiLM (Perez et al. 2018).
+    """
+
+    def __init__(self, features: int, context: int, map_channels: int) -> None:
         super().__init__()
-        self.look = nn.Conv2d(_PIXEL, HEAD, 3, padding=1, bias=False)
-        self.project = nn.Conv2d(features, HEAD, 1, bias=False)
-        self.mixed = nn.Sequential(nn.BatchNorm2d(HEAD), nn.ReLU(inplace=True))
-        self.modulate = nn.Linear(scene, 2 * HEAD)
-        self.deepen = _conv(HEAD, HEAD, size=1)
-        self.last = nn.Conv2d(HEAD, maps, 1)
+        self.conv = nn.Conv2d(_PIXEL_CHANNELS, _HEAD_CHANNELS, 3, padding=1, bias=False)
+        self.project = nn.Conv2d(features, _HEAD_CHANNELS, 1, bias=False)
+        self.norm = nn.Sequential(nn.BatchNorm2d(_HEAD_CHANNELS), nn.ReLU(inplace=True))
+        self.modulate = nn.Linear(context, 2 * _HEAD_CHANNELS)
+        self.deepen = _conv(_HEAD_CHANNELS, _HEAD_CHANNELS, size=1)
+        self.last = nn.Conv2d(_HEAD_CHANNELS, map_channels, 1)
 
     def forward(
         self,
         pixel: Float[Tensor, "batch c height width"],
         features: Float[Tensor, "batch f h w"],
-        scene: Float[Tensor, "batch s"],
-    ) -> Float[Tensor, "batch maps height width"]:
+        context: Float[Tensor, "batch s"],
+    ) -> Float[Tensor, "batch map_channels height width"]:
         # Projected before it is enlarged, which is the same and four times cheaper.
         around = F.interpolate(self.project(features), size=pixel.shape[-2:], mode="bilinear")
-        mixed = self.mixed(self.look(pixel) + around)
-        scale, shift = self.modulate(scene)[..., None, None].chunk(2, 1)
+        mixed = self.norm(self.conv(pixel) + around)
+        scale, shift = self.modulate(context)[..., None, None].chunk(2, 1)
         maps: Tensor = self.last(self.deepen(mixed * (1 + scale) + shift))
         return maps
 
 
 class _Merge(nn.Module):
-    """Features of a coarse level brought to a finer one and added to what was kept there."""
+    """Coarse features, resized and added to the features of a finer level."""
 
-    def __init__(self, coarse: int, fine: int):
+    def __init__(self, coarse: int, fine: int) -> None:
         super().__init__()
         self.project = nn.Conv2d(coarse, fine, 1)
         self.mix = _conv(fine, fine)

@@ -1,165 +1,395 @@
 """Losses of the autoencoder, each a mean over the photographs of a batch.
 
-A photograph's own loss does not depend on the others: processes that share a batch evenly have the
-mean of their losses in common, and it is that of the whole batch.
+The loss of a photograph does not depend on the other photographs. So the loss of a batch is the
+mean of the losses of its equal parts, and processes that share a batch have the loss of the whole.
 
-Images are linear sRGB [batch, 3, height, width], maps [batch, height, width], and a mask holds the
-probability that a pixel is skin.
+Images are linear sRGB [batch, 3, height, width], maps are [batch, height, width], and a mask holds
+the probability that a pixel is skin.
 """
 
 from jaxtyping import Float
-from kornia.color import rgb_to_grayscale
 from kornia.filters import gaussian_blur2d, spatial_gradient
 from torch import Tensor
 
 from skinnet.network.autoencoder import F_BLOOD_MAX, F_MEL_MAX, SkinMaps
 from skinnet.physics.capture import Capture
+from skinnet.physics.srgb import luminance
 
 Image = Float[Tensor, "batch 3 height width"]
 Map = Float[Tensor, "batch height width"]
 Scalar = Float[Tensor, ""]
 
 WHITE_BALANCE_SD = 0.05
-"""Spread allowed to the errors of a camera's white balance in log R/G and log B/G."""
+"""Standard deviation of a camera's white-balance errors in log R/G and log B/G."""
 
-SPREAD = 0.066, 0.024
-"""Standard deviations of melanin and hemoglobin over the twin's skin."""
+PIGMENT_SD = 0.066, 0.024
+"""Standard deviations of melanin and hemoglobin over the skin of the synthetic faces."""
 
-LIT = 0.85
-"""Mean shading of the twin's skin."""
+MEAN_SHADING = 0.85
+"""Mean shading of the skin of the synthetic faces."""
 
 _DARKEST = 1e-3
 _FAINT = 1e-4
 
 
-def appearance(reconstruction: Image, photograph: Image, weight: Map) -> Scalar:
-    """Mean absolute difference in linear sRGB, each pixel weighted.
+def appearance_l1(reconstruction: Image, photograph: Image, weight: Map) -> Scalar:
+    """Compute the weighted mean absolute difference of two images.
 
-    A photograph ends at 1, and where it does, whatever is brighter explains it.
+    Saturated pixels are not penalised for being predicted brighter.
+
+    Args:
+        reconstruction: Linear sRGB, not clipped.
+        photograph: Linear sRGB in [0, 1]; a channel at 1 is saturated.
+        weight: Weight of each pixel: the mask for the loss of skin, one minus the mask for that of
+            the background.
+
+    Returns:
+        Mean of |reconstruction - photograph| over channels and weighted pixels.
+
+    Example:
+        >>> import torch
+        >>> dark, weight = torch.zeros(1, 3, 4, 4), torch.ones(1, 4, 4)
+        >>> appearance_l1(dark + 0.25, dark, weight).item()
+        0.25
+        >>> appearance_l1(dark + 2, dark + 1, weight).item()
+        0.0
     """
-    burnt = (photograph >= 1) & (reconstruction > photograph)
-    difference = (reconstruction - photograph).abs().masked_fill(burnt, 0)
+    saturated = (photograph >= 1) & (reconstruction > photograph)
+    difference = (reconstruction - photograph).abs().masked_fill(saturated, 0)
     return _mean(difference.mean(1), weight)
 
 
 def camera_prior(capture: Capture) -> Scalar:
-    """Negative log likelihood of the camera and its white balance under their normal spread."""
+    """Compute the negative log likelihood of camera and white balance under normal priors.
+
+    Args:
+        capture: Camera coefficients in standard deviations, and white balance in logarithms.
+
+    Returns:
+        mean(b^2) / 2 + mean((w / 0.05)^2) / 2, for coefficients b and white-balance errors w.
+
+    Example:
+        >>> from skinnet.physics.camera import SpectralCamera
+        >>> camera_prior(SpectralCamera().standard((1,))).item()
+        0.0
+    """
     balance = (capture.white_balance / WHITE_BALANCE_SD) ** 2
     return (capture.camera**2).mean() / 2 + balance.mean() / 2
 
 
 def specular_sparsity(maps: SkinMaps, mask: Map) -> Scalar:
-    """Mean specular on skin (an L1 prior: highlights are rare, not absent)."""
+    """Compute the mean specular reflection on skin.
+
+    This is an L1 prior: highlights are rare, not absent.
+
+    Args:
+        maps: What the encoder read.
+        mask: Probability of skin.
+
+    Returns:
+        Weighted mean of the specular map.
+
+    Example:
+        >>> import torch
+        >>> values = torch.full((4, 1, 8, 8), 0.05)
+        >>> mask = torch.ones(1, 8, 8)
+        >>> maps = SkinMaps(*values, torch.zeros(1, 3, 8, 8), mask)
+        >>> round(specular_sparsity(maps, mask).item(), 4)
+        0.05
+    """
     return _mean(maps.specular, mask)
 
 
 def shading_smoothness(maps: SkinMaps, mask: Map) -> Scalar:
-    """Mean absolute gradient of log shading on skin, per pixel."""
+    """Compute the mean absolute gradient of log shading on skin.
+
+    Args:
+        maps: What the encoder read.
+        mask: Probability of skin.
+
+    Returns:
+        Weighted mean of |d log s / dx| + |d log s / dy|, per pixel.
+
+    Example:
+        >>> import torch
+        >>> values = torch.full((4, 1, 8, 8), 0.05)
+        >>> mask = torch.ones(1, 8, 8)
+        >>> maps = SkinMaps(*values, torch.zeros(1, 3, 8, 8), mask)
+        >>> shading_smoothness(maps, mask).item()
+        0.0
+    """
     log = maps.shading.clamp_min(_DARKEST).log()
     gradient = spatial_gradient(log[:, None], mode="diff")
     return _mean(gradient.abs().sum(2)[:, 0], mask)
 
 
-def shading_pseudo(maps: SkinMaps, photograph: Image, mask: Map) -> Scalar:
-    """Log shading against the log of the photograph's smoothed luminance, each less its mean.
+def shading_from_luminance(maps: SkinMaps, photograph: Image, mask: Map) -> Scalar:
+    """Compare log shading with the log of the photograph's smoothed luminance.
 
-    Where there is no true shading its low frequencies are those of luminance on skin of one colour;
-    its level is left open, since exposure and albedo trade against it.
+    On skin of one colour, the low frequencies of shading are those of luminance. Each photograph's
+    mean difference is removed, because exposure and albedo trade against the level of shading.
+
+    Args:
+        maps: What the encoder read.
+        photograph: Linear sRGB.
+        mask: Probability of skin.
+
+    Returns:
+        Weighted mean of the absolute difference.
+
+    Example:
+        >>> import torch
+        >>> values = torch.full((4, 1, 8, 8), 0.05)
+        >>> mask = torch.ones(1, 8, 8)
+        >>> maps = SkinMaps(*values, torch.zeros(1, 3, 8, 8), mask)
+        >>> photograph = torch.full((1, 3, 8, 8), 0.3)
+        >>> round(shading_from_luminance(maps, photograph, mask).item(), 4)
+        0.0
     """
     size = 2 * (min(mask.shape[-2:]) // 16) + 1
-    light = gaussian_blur2d(rgb_to_grayscale(photograph), size, (size / 4, size / 4))[:, 0]
+    light = gaussian_blur2d(luminance(photograph), size, (size / 4, size / 4))[:, 0]
     difference = maps.shading.clamp_min(_DARKEST).log() - light.clamp_min(_DARKEST).log()
     level = (difference * mask).sum((-2, -1)) / mask.sum((-2, -1)).clamp_min(1)
     return _mean((difference - level[:, None, None]).abs(), mask)
 
 
-def stray(maps: SkinMaps, mask: Map) -> Scalar:
-    """Mean shading of what is not skin: skin explains skin alone."""
+def off_skin_shading(maps: SkinMaps, mask: Map) -> Scalar:
+    """Penalise shading where there is no skin, so that skin explains skin alone.
+
+    Args:
+        maps: What the encoder read.
+        mask: Probability of skin.
+
+    Returns:
+        Mean over all pixels of shading times one minus the mask.
+
+    Example:
+        >>> import torch
+        >>> values = torch.full((4, 1, 8, 8), 0.05)
+        >>> mask = torch.ones(1, 8, 8)
+        >>> maps = SkinMaps(*values, torch.zeros(1, 3, 8, 8), mask)
+        >>> round(off_skin_shading(maps, 0 * mask).item(), 4)
+        0.05
+    """
     return (maps.shading * (1 - mask)).mean()
 
 
-def skin_mask(maps: SkinMaps, mask: Map) -> Scalar:
-    """Cross entropy of the skin mask."""
-    # torch's own refuses what is not a number, on a GPU by ending the process.
+def mask_cross_entropy(maps: SkinMaps, mask: Map) -> Scalar:
+    """Compute the cross entropy of the skin mask.
+
+    Args:
+        maps: What the encoder read.
+        mask: Probability of skin.
+
+    Returns:
+        Mean of -(m log p + (1 - m) log(1 - p)).
+
+    Example:
+        >>> import torch
+        >>> values = torch.full((4, 1, 8, 8), 0.05)
+        >>> mask = torch.ones(1, 8, 8)
+        >>> maps = SkinMaps(*values, torch.zeros(1, 3, 8, 8), mask)
+        >>> round(mask_cross_entropy(maps, mask).item(), 4)
+        0.0
+    """
+    # torch's own function refuses values that are not numbers, and on a GPU it ends the process.
     skin = maps.mask.clamp(1e-6, 1 - 1e-6)
     return -(mask * skin.log() + (1 - mask) * (1 - skin).log()).mean()
 
 
-def overlap(maps: SkinMaps, mask: Map) -> Scalar:
-    """What the skin mask lacks of an intersection over union of one; skin is a mask above one half.
+def soft_iou(maps: SkinMaps, mask: Map) -> Scalar:
+    """Compute one minus the soft intersection over union (Jaccard index) of the skin mask.
 
-    A cross entropy alone lets thin beards and loose hair stay near one half on either side.
+    Cross entropy alone leaves thin beards and loose hair near one half on either side.
+
+    Args:
+        maps: What the encoder read.
+        mask: Probability of skin; a pixel above one half is skin.
+
+    Returns:
+        1 - (sum(p m) + 1) / (sum(p + m - p m) + 1), for prediction p and skin m. The added pixel
+        makes a prediction without skin right for a photograph without skin.
+
+    Source:
+        Rahman & Wang 2016, "Optimizing Intersection-Over-Union in Deep Neural Networks".
+
+    Example:
+        >>> import torch
+        >>> values = torch.full((4, 1, 8, 8), 0.05)
+        >>> mask = torch.ones(1, 8, 8)
+        >>> maps = SkinMaps(*values, torch.zeros(1, 3, 8, 8), mask)
+        >>> soft_iou(maps, mask).item()
+        0.0
     """
     skin, over = (mask > 0.5).to(mask), (-2, -1)
-    common = (maps.mask * skin).sum(over)
-    whole = (maps.mask + skin).sum(over) - common
-    # One pixel more in both, so that no skin found where there is none is right.
-    return (1 - (common + 1) / (whole + 1)).mean()
+    intersection = (maps.mask * skin).sum(over)
+    union = (maps.mask + skin).sum(over) - intersection
+    return (1 - (intersection + 1) / (union + 1)).mean()
 
 
-def pigments(maps: SkinMaps, truth: SkinMaps) -> Scalar:
-    """Mean absolute error of both pigments on true skin, in cube roots of their range.
+def pigment_l1(maps: SkinMaps, truth: SkinMaps) -> Scalar:
+    """Compute the mean absolute error of both pigments on true skin, in cube roots.
 
-    Even steps there are about even steps of colour; in fractions, dark skin alone would count.
+    Equal steps of the cube root are about equal steps of colour. In plain fractions, only dark skin
+    would count.
+
+    Args:
+        maps: What the encoder read.
+        truth: True maps and mask.
+
+    Returns:
+        Weighted mean of |d m^(1/3)| + |d b^(1/3)|, for melanin m and blood b relative to their
+        largest fractions.
+
+    Example:
+        >>> import torch
+        >>> values = torch.full((4, 1, 8, 8), 0.05)
+        >>> mask = torch.ones(1, 8, 8)
+        >>> maps = SkinMaps(*values, torch.zeros(1, 3, 8, 8), mask)
+        >>> truth = maps._replace(melanin=8 * maps.melanin)  # twice the cube root
+        >>> round(pigment_l1(maps, truth).item(), 4), round((0.05 / F_MEL_MAX) ** (1 / 3), 4)
+        (0.488, 0.488)
     """
     melanin = _root(maps.melanin, F_MEL_MAX) - _root(truth.melanin, F_MEL_MAX)
     blood = _root(maps.hemoglobin, F_BLOOD_MAX) - _root(truth.hemoglobin, F_BLOOD_MAX)
     return _mean(melanin.abs() + blood.abs(), truth.mask)
 
 
-def fractions(maps: SkinMaps, truth: SkinMaps) -> Scalar:
-    """Mean squared error of both pigments on true skin, in standard deviations of each.
+def pigment_mse(maps: SkinMaps, truth: SkinMaps) -> Scalar:
+    """Compute the mean squared error of both pigments on true skin, in standard deviations.
 
-    `pigments` is of typical errors and of all skin alike; this one is of the largest, which are
-    those of dark skin and of much blood.
+    `pigment_l1` measures typical errors and all skin alike. This loss measures the largest errors,
+    which are those of dark skin and of much blood.
+
+    Args:
+        maps: What the encoder read.
+        truth: True maps and mask.
+
+    Returns:
+        Weighted mean of ((m - m*) / 0.066)^2 + ((b - b*) / 0.024)^2, for melanin m and blood b.
+
+    Example:
+        >>> import torch
+        >>> values = torch.full((4, 1, 8, 8), 0.05)
+        >>> mask = torch.ones(1, 8, 8)
+        >>> maps = SkinMaps(*values, torch.zeros(1, 3, 8, 8), mask)
+        >>> truth = maps._replace(melanin=maps.melanin + 2 * PIGMENT_SD[0])
+        >>> round(pigment_mse(maps, truth).item(), 4)
+        4.0
     """
     melanin, blood = (
-        ((guess - true) / spread) ** 2
-        for guess, true, spread in zip(maps[:2], truth[:2], SPREAD, strict=True)
+        ((guess - true) / deviation) ** 2
+        for guess, true, deviation in zip(maps[:2], truth[:2], PIGMENT_SD, strict=True)
     )
     return _mean(melanin + blood, truth.mask)
 
 
-def leak(maps: SkinMaps, truth: SkinMaps) -> Scalar:
-    """Minus the mean product of melanin's error, in cube roots, and of the true shading beyond
-    `LIT`, cut off at 2.
+def error_shading_covariance(maps: SkinMaps, truth: SkinMaps) -> Scalar:
+    """Compute minus the covariance of melanin's error with the true shading.
 
-    Pale skin in little light looks as dark skin in much of it does, and whoever guesses best
-    between them says too little melanin where the light is strong. Its weight is the Lagrange
-    multiplier of asking that errors do not follow the light; more than needed turns the sign, and
-    with seven eighths of the weight of `pigments` or more it has no minimum.
+    Pale skin in little light looks like dark skin in strong light. The best guess between the two
+    has too little melanin where the light is strong, so its error falls with shading. The weight
+    of this loss is the Lagrange multiplier of the constraint that errors do not depend on shading.
+    Too large a weight turns the sign of the covariance, and from seven eighths of the weight of
+    `pigment_l1` on the sum of both has no minimum.
+
+    Args:
+        maps: What the encoder read.
+        truth: True maps and mask.
+
+    Returns:
+        -mean(e (min(s, 2) - 0.85)), for the error e of the cube root of melanin and shading s; 0.85
+        is the mean of shading.
+
+    Example:
+        >>> import torch
+        >>> values = torch.full((4, 1, 8, 8), 0.05)
+        >>> mask = torch.ones(1, 8, 8)
+        >>> maps = SkinMaps(*values, torch.zeros(1, 3, 8, 8), mask)
+        >>> bright = maps._replace(melanin=8 * maps.melanin, shading=2 * mask)
+        >>> round(error_shading_covariance(maps, bright).item(), 4)  # .488 times 1.15
+        0.5612
     """
     error = _root(maps.melanin, F_MEL_MAX) - _root(truth.melanin, F_MEL_MAX)
-    return -_mean(error * (truth.shading.clamp_max(2) - LIT), truth.mask)
+    return -_mean(error * (truth.shading.clamp_max(2) - MEAN_SHADING), truth.mask)
 
 
-def steadiness(maps: SkinMaps, mask: Map) -> Scalar:
-    """Mean absolute difference of both pigments between the halves of a batch, in cube roots.
+def augmentation_consistency(maps: SkinMaps, mask: Map) -> Scalar:
+    """Compare the pigments of photographs with those of their augmented copies, in cube roots.
 
-    The second half shows the photographs of the first in another exposure and white balance, and a
-    face keeps its pigments.
+    Args:
+        maps: Maps of a batch whose second half shows the photographs of the first half in another
+            exposure and white balance.
+        mask: Probability of skin, for the whole batch.
+
+    Returns:
+        Weighted mean of |d m^(1/3)| + |d b^(1/3)| between the halves, for melanin m and blood b
+        relative to their largest fractions.
+
+    Example:
+        >>> import torch
+        >>> values = torch.full((4, 1, 8, 8), 0.05)
+        >>> mask = torch.ones(1, 8, 8)
+        >>> maps = SkinMaps(*values, torch.zeros(1, 3, 8, 8), mask)
+        >>> batch = SkinMaps(*(torch.cat([value, value]) for value in maps))
+        >>> augmentation_consistency(batch, torch.cat([mask, mask])).item()
+        0.0
     """
-    melanin, again = _root(maps.melanin, F_MEL_MAX).chunk(2)
+    melanin, melanin_again = _root(maps.melanin, F_MEL_MAX).chunk(2)
     blood, blood_again = _root(maps.hemoglobin, F_BLOOD_MAX).chunk(2)
-    return _mean((melanin - again).abs() + (blood - blood_again).abs(), mask.chunk(2)[0])
+    difference = (melanin - melanin_again).abs() + (blood - blood_again).abs()
+    return _mean(difference, mask.chunk(2)[0])
 
 
-def lighting(maps: SkinMaps, truth: SkinMaps) -> Scalar:
-    """Mean absolute error of shading, and ten times the squared one of root specular.
+def lighting_error(maps: SkinMaps, truth: SkinMaps) -> Scalar:
+    """Compute the absolute error of shading, and the squared error of root specular times ten.
 
-    Most skin has next to no gloss, so that an absolute error is least where none is ever seen.
+    Most skin has hardly any specular reflection. An absolute error would be least for a prediction
+    without any.
+
+    Args:
+        maps: What the encoder read.
+        truth: True maps.
+
+    Returns:
+        Mean of |s - s*| + 10 (sqrt(g) - sqrt(g*))^2, for shading s and specular reflection g.
+
+    Example:
+        >>> import torch
+        >>> values = torch.full((4, 1, 8, 8), 0.05)
+        >>> mask = torch.ones(1, 8, 8)
+        >>> maps = SkinMaps(*values, torch.zeros(1, 3, 8, 8), mask)
+        >>> truth = maps._replace(shading=maps.shading + 0.5)
+        >>> round(lighting_error(maps, truth).item(), 4)
+        0.5
     """
-    gloss = (maps.specular + _FAINT).sqrt() - (truth.specular + _FAINT).sqrt()
-    return (10 * gloss**2 + (maps.shading - truth.shading).abs()).mean()
+    specular = (maps.specular + _FAINT).sqrt() - (truth.specular + _FAINT).sqrt()
+    return (10 * specular**2 + (maps.shading - truth.shading).abs()).mean()
 
 
-def white_balance(capture: Capture, truth: Capture) -> Scalar:
-    """Mean absolute error of the white balance in units of its spread."""
+def white_balance_l1(capture: Capture, truth: Capture) -> Scalar:
+    """Compute the mean absolute error of the white balance, in standard deviations.
+
+    Args:
+        capture: What the encoder read.
+        truth: The true capture.
+
+    Returns:
+        Mean of |w - w*| / 0.05, for log R/G and log B/G.
+
+    Example:
+        >>> import torch
+        >>> from skinnet.physics.camera import SpectralCamera
+        >>> perfect = SpectralCamera().standard((1,))
+        >>> other = perfect._replace(white_balance=torch.full((1, 2), 0.05))
+        >>> white_balance_l1(other, perfect).item()
+        1.0
+    """
     return (capture.white_balance - truth.white_balance).abs().mean() / WHITE_BALANCE_SD
 
 
 def _root(fraction: Map, largest: float) -> Map:
-    # Zero has no slope under a cube root.
+    # The derivative of the cube root is infinite at zero.
     return (fraction / largest).clamp_min(1e-6) ** (1 / 3)
 
 

@@ -157,7 +157,7 @@ def test_a_checkpoint_that_is_none_is_refused(
         ("--model.nonsense=1", "nonsense"),
         ("--model.learning_rate=-1", "learning_rate"),
         ("--data.init_args.batch_size=0", "batch_size"),
-        ("--model.losses.pigments=-3", "pigments"),
+        ("--model.losses.pigment_l1=-3", "pigments"),
         ("--data.class_path=Nothing", "class_path"),
     ],
 )

@@ -29,14 +29,14 @@ def test_a_perfect_reading_costs_nothing() -> None:
     truth = maps()
     photograph = torch.rand(2, 3, 8, 8)
     ones = torch.ones(2, 8, 8)
-    assert losses.appearance(photograph, photograph, ones) == 0
-    assert losses.pigments(truth, truth) == 0 and losses.lighting(truth, truth) == 0
-    assert losses.fractions(truth, truth) == 0 and losses.leak(truth, truth) == 0
-    assert losses.overlap(truth, ones) == pytest.approx(0, abs=1e-6)
+    assert losses.appearance_l1(photograph, photograph, ones) == 0
+    assert losses.pigment_l1(truth, truth) == 0 and losses.lighting_error(truth, truth) == 0
+    assert losses.pigment_mse(truth, truth) == 0 and losses.error_shading_covariance(truth, truth) == 0
+    assert losses.soft_iou(truth, ones) == pytest.approx(0, abs=1e-6)
     assert losses.camera_prior(capture()) == 0
-    assert losses.stray(truth, ones) == 0
+    assert losses.off_skin_shading(truth, ones) == 0
     assert losses.shading_smoothness(truth, ones) == 0
-    assert losses.skin_mask(truth, ones) == pytest.approx(0, abs=1e-5)
+    assert losses.mask_cross_entropy(truth, ones) == pytest.approx(0, abs=1e-5)
 
 
 def test_appearance_counts_where_the_weight_is() -> None:
@@ -45,17 +45,17 @@ def test_appearance_counts_where_the_weight_is() -> None:
     weight[:, :4] = 1
     wrong = photograph.clone()
     wrong[:, :, 4:] = 9
-    assert losses.appearance(wrong, photograph, weight) == 0
-    assert losses.appearance(photograph + 0.25, photograph, weight) == pytest.approx(0.25)
+    assert losses.appearance_l1(wrong, photograph, weight) == 0
+    assert losses.appearance_l1(photograph + 0.25, photograph, weight) == pytest.approx(0.25)
 
 
 def test_where_a_photograph_ends_brighter_is_right_and_darker_is_not() -> None:
     photograph, ones = torch.ones(2, 3, 8, 8), torch.ones(2, 8, 8)
     made = torch.full_like(photograph, 1.5).requires_grad_()
-    assert losses.appearance(made, photograph, ones) == 0
-    assert losses.appearance(made - 0.75, photograph, ones).item() == pytest.approx(0.25)
+    assert losses.appearance_l1(made, photograph, ones) == 0
+    assert losses.appearance_l1(made - 0.75, photograph, ones).item() == pytest.approx(0.25)
     # Only where it ends: elsewhere too bright is wrong, and is drawn back however bright.
-    loss = losses.appearance(made, 0.9 * photograph, ones)
+    loss = losses.appearance_l1(made, 0.9 * photograph, ones)
     loss.backward()
     assert loss.item() == pytest.approx(0.6) and made.grad is not None and (made.grad > 0).all()
 
@@ -63,29 +63,29 @@ def test_where_a_photograph_ends_brighter_is_right_and_darker_is_not() -> None:
 def test_pigments_are_compared_in_cube_roots() -> None:
     truth, guess = maps(), maps(melanin=torch.full((2, 8, 8), 8 * 0.05))
     root = (0.05 / 0.43) ** (1 / 3)
-    assert losses.pigments(guess, truth).item() == pytest.approx(root, abs=1e-4)
+    assert losses.pigment_l1(guess, truth).item() == pytest.approx(root, abs=1e-4)
 
 
 def test_fractions_are_compared_in_their_spreads() -> None:
-    melanin, blood = losses.SPREAD
+    melanin, blood = losses.PIGMENT_SD
     guess = maps(melanin=0.05 + torch.full((2, 8, 8), 2 * melanin))
-    assert losses.fractions(guess, maps()).item() == pytest.approx(4, rel=1e-4)
+    assert losses.pigment_mse(guess, maps()).item() == pytest.approx(4, rel=1e-4)
     guess = maps(hemoglobin=0.05 - torch.full((2, 8, 8), blood))
-    assert losses.fractions(guess, maps()).item() == pytest.approx(1, rel=1e-4)
+    assert losses.pigment_mse(guess, maps()).item() == pytest.approx(1, rel=1e-4)
 
 
 def test_a_leak_rewards_an_error_that_rises_with_the_light() -> None:
     # The gradient tilts an absolute error towards more melanin where the light is strong.
-    shading = torch.linspace(0, 2 * losses.LIT, 64).reshape(1, 8, 8).expand(2, 8, 8)
+    shading = torch.linspace(0, 2 * losses.MEAN_SHADING, 64).reshape(1, 8, 8).expand(2, 8, 8)
     guess = torch.full((2, 8, 8), 0.05, requires_grad=True)
     bright = maps(shading=torch.full((2, 8, 8), 9.0))
     more = (0.1 / F_MEL_MAX) ** (1 / 3) - (0.05 / F_MEL_MAX) ** (1 / 3)
-    cut = losses.leak(maps(melanin=torch.full((2, 8, 8), 0.1)), bright)
-    assert cut.item() == pytest.approx(-more * (2 - losses.LIT), rel=1e-4)
-    found = losses.leak(maps(melanin=guess), maps(shading=shading))
+    cut = losses.error_shading_covariance(maps(melanin=torch.full((2, 8, 8), 0.1)), bright)
+    assert cut.item() == pytest.approx(-more * (2 - losses.MEAN_SHADING), rel=1e-4)
+    found = losses.error_shading_covariance(maps(melanin=guess), maps(shading=shading))
     assert found.item() == pytest.approx(0, abs=1e-6)
     (slope,) = torch.autograd.grad(found, guess)
-    assert (slope[shading > losses.LIT] < 0).all() and (slope[shading < losses.LIT] > 0).all()
+    assert (slope[shading > losses.MEAN_SHADING] < 0).all() and (slope[shading < losses.MEAN_SHADING] > 0).all()
 
 
 def test_overlap_is_of_what_counts_as_skin() -> None:
@@ -94,17 +94,17 @@ def test_overlap_is_of_what_counts_as_skin() -> None:
     skin[:, 4:] = 0.4
     guess = torch.zeros(2, 8, 8)
     guess[:, 2:6] = 1
-    assert losses.overlap(maps(mask=guess), skin).item() == pytest.approx(1 - 17 / 49)
+    assert losses.soft_iou(maps(mask=guess), skin).item() == pytest.approx(1 - 17 / 49)
     nothing = maps(mask=torch.zeros(2, 8, 8))
-    assert losses.overlap(nothing, 0.1 * skin) == 0
-    assert losses.overlap(maps(), 0.1 * skin) > 0.9
+    assert losses.soft_iou(nothing, 0.1 * skin) == 0
+    assert losses.soft_iou(maps(), 0.1 * skin) > 0.9
 
 
 def test_shading_pseudo_leaves_the_level_open() -> None:
     photograph = torch.full((2, 3, 8, 8), 0.2)
     for level in (0.3, 3.0):
         found = maps(shading=torch.full((2, 8, 8), level))
-        assert losses.shading_pseudo(found, photograph, torch.ones(2, 8, 8)) < 1e-5
+        assert losses.shading_from_luminance(found, photograph, torch.ones(2, 8, 8)) < 1e-5
 
 
 def test_priors_grow_with_what_they_restrain() -> None:
@@ -112,11 +112,11 @@ def test_priors_grow_with_what_they_restrain() -> None:
     assert losses.camera_prior(capture(balance=0.05)).item() == pytest.approx(0.5)
     ones = torch.ones(2, 8, 8)
     assert losses.specular_sparsity(maps(specular=0.2 * ones), ones).item() == pytest.approx(0.2)
-    assert losses.stray(maps(), 0 * ones) == 1
+    assert losses.off_skin_shading(maps(), 0 * ones) == 1
 
 
 def test_white_balance_is_in_units_of_its_spread() -> None:
-    found = losses.white_balance(capture(balance=0.05), capture())
+    found = losses.white_balance_l1(capture(balance=0.05), capture())
     assert found.item() == pytest.approx(1)
 
 
@@ -133,17 +133,17 @@ def test_the_loss_of_a_batch_is_the_mean_of_those_of_its_halves() -> None:
     def found(part: slice) -> torch.Tensor:
         one, other = (SkinMaps(*(value[part] for value in each)) for each in (guess, truth))
         return torch.stack([
-            losses.appearance(made[part], photograph[part], mask[part]),
+            losses.appearance_l1(made[part], photograph[part], mask[part]),
             losses.specular_sparsity(one, mask[part]),
             losses.shading_smoothness(one, mask[part]),
-            losses.shading_pseudo(one, photograph[part], mask[part]),
-            losses.stray(one, mask[part]),
-            losses.skin_mask(one, mask[part]),
-            losses.pigments(one, other),
-            losses.fractions(one, other),
-            losses.leak(one, other),
-            losses.overlap(one, mask[part]),
-            losses.lighting(one, other),
+            losses.shading_from_luminance(one, photograph[part], mask[part]),
+            losses.off_skin_shading(one, mask[part]),
+            losses.mask_cross_entropy(one, mask[part]),
+            losses.pigment_l1(one, other),
+            losses.pigment_mse(one, other),
+            losses.error_shading_covariance(one, other),
+            losses.soft_iou(one, mask[part]),
+            losses.lighting_error(one, other),
         ])  # fmt: skip
 
     halves = (found(slice(0, 2)) + found(slice(2, 4))) / 2
@@ -152,9 +152,9 @@ def test_the_loss_of_a_batch_is_the_mean_of_those_of_its_halves() -> None:
 
 def test_the_skin_mask_is_a_cross_entropy_that_lets_pass_what_is_no_number() -> None:
     guess, truth = torch.rand(2, 8, 8), torch.rand(2, 8, 8)
-    found = losses.skin_mask(maps(mask=guess), truth)
+    found = losses.mask_cross_entropy(maps(mask=guess), truth)
     torch.testing.assert_close(found, torch.nn.functional.binary_cross_entropy(guess, truth))
-    assert losses.skin_mask(maps(mask=guess / 0 * 0), truth).isnan()
+    assert losses.mask_cross_entropy(maps(mask=guess / 0 * 0), truth).isnan()
 
 
 def test_gradients_are_finite_at_the_edges() -> None:
@@ -163,13 +163,13 @@ def test_gradients_are_finite_at_the_edges() -> None:
     guess = [value.clone().requires_grad_() for value in maps(melanin=zero, shading=zero)]
     found = SkinMaps(*guess)
     total = (
-        losses.pigments(found, truth)
-        + losses.fractions(found, truth)
-        + losses.leak(found, truth)
-        + losses.overlap(found, 0 * truth.mask)
-        + losses.lighting(found, truth)
+        losses.pigment_l1(found, truth)
+        + losses.pigment_mse(found, truth)
+        + losses.error_shading_covariance(found, truth)
+        + losses.soft_iou(found, 0 * truth.mask)
+        + losses.lighting_error(found, truth)
         + losses.shading_smoothness(found, truth.mask)
-        + losses.skin_mask(found, 0 * truth.mask)
+        + losses.mask_cross_entropy(found, 0 * truth.mask)
     )
     for gradient in torch.autograd.grad(total, guess, allow_unused=True):
         assert gradient is None or gradient.isfinite().all()
@@ -182,9 +182,9 @@ def test_steadiness_compares_the_two_halves() -> None:
         torch.ones(4, 6, 6),
     )
     mask = torch.ones(4, 6, 6)
-    assert losses.steadiness(seen, mask) == pytest.approx(0, abs=1e-6)
+    assert losses.augmentation_consistency(seen, mask) == pytest.approx(0, abs=1e-6)
     other = seen.melanin.clone()
     other[2] = 0.1
     root = (0.1 / F_MEL_MAX) ** (1 / 3) - (0.05 / F_MEL_MAX) ** (1 / 3)
-    found = losses.steadiness(seen._replace(melanin=other), mask)
+    found = losses.augmentation_consistency(seen._replace(melanin=other), mask)
     assert found == pytest.approx(root / 2, rel=1e-4)

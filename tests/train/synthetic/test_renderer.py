@@ -195,9 +195,9 @@ def test_the_losses_know_the_spread_of_skin_and_its_light(data: SyntheticFaces) 
     truth = data.render(default_collate([lots[index] for index in range(96)]), "train").truth
     assert truth is not None
     skin = truth.mask > 0.5
-    for values, spread in zip(truth[:2], losses.SPREAD, strict=True):
+    for values, spread in zip(truth[:2], losses.PIGMENT_SD, strict=True):
         assert values[skin].std().item() == pytest.approx(spread, rel=0.2)
-    assert truth.shading[skin].mean().item() == pytest.approx(losses.LIT, rel=0.15)
+    assert truth.shading[skin].mean().item() == pytest.approx(losses.MEAN_SHADING, rel=0.15)
 
 
 def test_lots_cover_pale_and_dark_skin_evenly() -> None:

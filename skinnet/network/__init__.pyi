@@ -1,0 +1,53 @@
+from .autoencoder import CAMERA_MAX as CAMERA_MAX
+from .autoencoder import F_BLOOD_MAX as F_BLOOD_MAX
+from .autoencoder import F_MEL_MAX as F_MEL_MAX
+from .autoencoder import SHADING_MAX as SHADING_MAX
+from .autoencoder import WHITE_BALANCE_MAX as WHITE_BALANCE_MAX
+from .autoencoder import AutoencoderConfig as AutoencoderConfig
+from .autoencoder import Reading as Reading
+from .autoencoder import SkinAutoencoder as SkinAutoencoder
+from .autoencoder import SkinMaps as SkinMaps
+from .checkpoint import read_checkpoint as read_checkpoint
+from .encoder import SkinEncoder as SkinEncoder
+from .losses import appearance_l1 as appearance_l1
+from .losses import augmentation_consistency as augmentation_consistency
+from .losses import camera_prior as camera_prior
+from .losses import error_shading_covariance as error_shading_covariance
+from .losses import lighting_error as lighting_error
+from .losses import mask_cross_entropy as mask_cross_entropy
+from .losses import off_skin_shading as off_skin_shading
+from .losses import pigment_l1 as pigment_l1
+from .losses import pigment_mse as pigment_mse
+from .losses import shading_from_luminance as shading_from_luminance
+from .losses import shading_smoothness as shading_smoothness
+from .losses import soft_iou as soft_iou
+from .losses import specular_sparsity as specular_sparsity
+from .losses import white_balance_l1 as white_balance_l1
+
+__all__ = [
+    "CAMERA_MAX",
+    "F_BLOOD_MAX",
+    "F_MEL_MAX",
+    "SHADING_MAX",
+    "WHITE_BALANCE_MAX",
+    "AutoencoderConfig",
+    "Reading",
+    "SkinAutoencoder",
+    "SkinEncoder",
+    "SkinMaps",
+    "appearance_l1",
+    "augmentation_consistency",
+    "camera_prior",
+    "error_shading_covariance",
+    "lighting_error",
+    "mask_cross_entropy",
+    "off_skin_shading",
+    "pigment_l1",
+    "pigment_mse",
+    "read_checkpoint",
+    "shading_from_luminance",
+    "shading_smoothness",
+    "soft_iou",
+    "specular_sparsity",
+    "white_balance_l1",
+]
