@@ -4,16 +4,12 @@ import argparse
 import sys
 from collections.abc import Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING
 
 from skinnet.errors import InputError
 
-if TYPE_CHECKING:
-    from skinnet.network.autoencoder import SkinAutoencoder
-
 
 def main(arguments: Sequence[str] | None = None) -> int:
-    """Export a checkpoint; 0 on success, 2 with a sentence on stderr for bad input."""
+    """Export a checkpoint; return 0, or 2 with a sentence on stderr for bad input."""
     parser = argparse.ArgumentParser(
         prog="python -m export",
         description="Write a checkpoint as ONNX, compared with torch: the encoder to FILE, and "
@@ -49,6 +45,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
 def _export(checkpoint: Path, output: Path, half: bool) -> None:
     # Imported here, so that --help does not wait for torch.
     from export.onnx_file import SIZES, export_model
+    from skinnet.network import SkinAutoencoder
 
     if output.suffix != ".onnx":
         raise InputError(f"{output} does not end in .onnx; name the file that is to be written.")
@@ -61,8 +58,7 @@ def _export(checkpoint: Path, output: Path, half: bool) -> None:
             f"{checkpoint} would be overwritten, since weights are written beside {output}; give "
             "another name with -o."
         )
-    model, trained_on = _load(checkpoint)
-    reports = export_model(model, output, trained_on, half)
+    reports = export_model(SkinAutoencoder.from_pretrained(checkpoint), output, half)
     sizes = ", ".join("x".join(map(str, size)) for size in SIZES)
     print(f"compared with torch at {sizes} (batch x height x width)")
     for report in reports:
@@ -72,15 +68,6 @@ def _export(checkpoint: Path, output: Path, half: bool) -> None:
             f"the range ({name}), "
             f"{report.milliseconds:.0f} ms at 256 x 256"
         )
-
-
-def _load(path: Path) -> "tuple[SkinAutoencoder, str]":
-    from skinnet.network.checkpoint import load_checkpoint
-    from skinnet.network._weights import load_weights, read_weights
-
-    if path.suffix == ".safetensors":
-        return load_weights(path), read_weights(path)[0]["skinnet.trained_on"]
-    return load_checkpoint(path)
 
 
 if __name__ == "__main__":

@@ -5,7 +5,7 @@ from typing import Any
 import torch
 from torch import Tensor, nn
 
-from skinnet.network.autoencoder import (
+from skinnet.network import (
     CAMERA_MAX,
     F_BLOOD_MAX,
     F_MEL_MAX,
@@ -43,22 +43,23 @@ PIXELS = ("melanin", "hemoglobin", "shading", "specular", "offset")
 
 
 class EncoderGraph(nn.Module):
-    """uint8 sRGB [batch, height, width, 3] to the ten `OUTPUTS`, channels last."""
+    """Computes the ten `OUTPUTS`, channels last, from uint8 sRGB [batch, height, width, 3]."""
 
-    def __init__(self, model: SkinAutoencoder):
+    def __init__(self, model: SkinAutoencoder) -> None:
         super().__init__()
         self.model = model
 
     def forward(self, image: Tensor) -> tuple[Tensor, ...]:
+        """Read photographs."""
         maps, capture = self.model.encode(image.movedim(-1, 1).float() / 255)
         named = {**maps._asdict(), **capture._asdict(), "offset": maps.offset.movedim(1, -1)}
         return tuple(named[name] for name in OUTPUTS)
 
 
 class DecoderGraph(nn.Module):
-    """The outputs of `EncoderGraph` but for the mask to display sRGB, channels last."""
+    """Computes display sRGB, channels last, from the outputs of `EncoderGraph` but the mask."""
 
-    def __init__(self, decoder: SkinDecoder):
+    def __init__(self, decoder: SkinDecoder) -> None:
         super().__init__()
         self.decoder = decoder
 
@@ -66,12 +67,13 @@ class DecoderGraph(nn.Module):
         self, melanin: Tensor, hemoglobin: Tensor, shading: Tensor, specular: Tensor,
         offset: Tensor, light: Tensor, temperature: Tensor, camera: Tensor, white_balance: Tensor,
     ) -> Tensor:  # fmt: skip
+        """Make photographs from maps and captures."""
         capture = Capture(light, temperature, camera, white_balance)
         maps = (melanin, hemoglobin, shading, specular, offset.movedim(-1, 1))
         return to_display(self.decoder.compose(*maps, capture)).movedim(1, -1)
 
 
-def example(batch: int, height: int, width: int) -> Tensor:
-    """A noise photograph of that size, the same on every run."""
-    lot = torch.Generator().manual_seed(height * 10_000 + width)
-    return torch.randint(0, 256, (batch, height, width, 3), generator=lot, dtype=torch.uint8)
+def make_example(batch: int, height: int, width: int) -> Tensor:
+    """Make noise photographs of that size, the same on every run."""
+    rng = torch.Generator().manual_seed(height * 10_000 + width)
+    return torch.randint(0, 256, (batch, height, width, 3), generator=rng, dtype=torch.uint8)

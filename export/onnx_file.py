@@ -1,4 +1,4 @@
-"""Writing ONNX files that say what they are, and comparing them with torch."""
+"""Writes ONNX files with their metadata, and compares them with torch."""
 
 import json
 import logging
@@ -16,13 +16,12 @@ import torch
 from torch import Tensor, nn
 from torch.export import Dim
 
-from export.graphs import DECODED, OUTPUTS, PIXELS, DecoderGraph, EncoderGraph, Output, example
+from export.graphs import DECODED, OUTPUTS, PIXELS, DecoderGraph, EncoderGraph, Output, make_example
 from skinnet._version import __version__
 from skinnet.errors import InputError
 from skinnet.files import write_together
 from skinnet.inference import ONNX_FORMAT, get_decoder_path
-from skinnet.network.autoencoder import SkinAutoencoder
-from skinnet.network._weights import save_weights
+from skinnet.network import SkinAutoencoder
 from skinnet.physics import LIGHTS
 
 OPSET = 20
@@ -32,7 +31,14 @@ SIZES = ((1, 64, 64), (2, 97, 65), (1, 128, 128), (3, 33, 201), (1, 256, 256))
 
 @dataclass(frozen=True)
 class Report:
-    """What an exported file was found to be; differences are in parts of an output's range."""
+    """Measurements of an exported file.
+
+    Attributes:
+        path: The file.
+        megabytes: Its size.
+        difference: Largest difference from torch, as a share of an output's range, by output.
+        milliseconds: Time to run the largest example once.
+    """
 
     path: Path
     megabytes: float
@@ -40,21 +46,27 @@ class Report:
     milliseconds: float
 
 
-def export_model(
-    model: SkinAutoencoder, path: Path, trained_on: str, half: bool = False
-) -> list[Report]:
-    """Write the encoder to `path`, and beside it the decoder and the weights.
+def export_model(model: SkinAutoencoder, path: Path, half: bool = False) -> list[Report]:
+    """Write the encoder to `path`, and the decoder and the weights beside it.
 
-    With `half` the encoder's weights are rounded to half precision, in which .safetensors then
-    holds them. Raises `InputError` if an ONNX file differs from torch by more than 1e-3 of an
-    output's range; then nothing is written.
+    Args:
+        model: What to export; the files carry its `trained_on`.
+        path: The encoder's .onnx file.
+        half: Round the encoder's weights to half precision, in which .safetensors then holds them.
+
+    Returns:
+        Measurements of encoder and decoder.
+
+    Raises:
+        InputError: if an ONNX file differs from torch by more than 1e-3 of an output's range. Then
+            nothing is written.
     """
     model = model.eval()
     if half:
-        # Rounded before any file is made of them, so that all hold the same weights. The
-        # constants of the physics would not survive it.
+        # Rounded before any file is written, so that all files hold the same weights. The
+        # constants of the physics need float32.
         model.encoder.half().float()
-    photograph = example(2, 64, 80)
+    photograph = make_example(2, 64, 80)
     maps = EncoderGraph(model)(photograph)
     decoder_inputs = {k: v for k, v in zip(OUTPUTS, maps, strict=True) if k != "mask"}
     jobs = [
@@ -66,11 +78,11 @@ def export_model(
         for kind, graph, inputs, outputs, target in jobs:
             part = beside(target)
             _write(graph, inputs, outputs, part)
-            _describe(part, kind, model, outputs, trained_on)
+            _describe(part, kind, model, outputs)
             reports.append(_compare(model, part, target))
         if half:
             model.encoder.half()
-        save_weights(model, beside(path.with_suffix(".safetensors")), trained_on)
+        model.save_pretrained(beside(path.with_suffix(".safetensors")))
     return reports
 
 
@@ -80,7 +92,7 @@ def _write(
     batch, height, width = Dim("batch"), Dim("height"), Dim("width")
     pixels = {0: batch, 1: height, 2: width}
     shapes = {name: pixels if name in (*PIXELS, "image") else {0: batch} for name in inputs}
-    with quiet():
+    with _silence_exporter():
         program = torch.onnx.export(
             graph.eval(),
             tuple(inputs.values()),
@@ -97,8 +109,8 @@ def _write(
 
 
 @contextmanager
-def quiet() -> Iterator[None]:
-    """Without the exporter's remarks on torchvision, its own deprecations and repeated axes."""
+def _silence_exporter() -> Iterator[None]:
+    """Silence the exporter's remarks on torchvision, deprecations and repeated axes."""
     logger = logging.getLogger("torch.onnx")
     level = logger.level
     logger.setLevel(logging.ERROR)
@@ -110,9 +122,7 @@ def quiet() -> Iterator[None]:
         logger.setLevel(level)
 
 
-def _describe(
-    path: Path, kind: str, model: SkinAutoencoder, outputs: dict[str, Output], trained_on: str
-) -> None:
+def _describe(path: Path, kind: str, model: SkinAutoencoder, outputs: dict[str, Output]) -> None:
     file = onnx.load(path)
     metadata = {
         "skinnet.kind": kind,
@@ -122,12 +132,12 @@ def _describe(
         "skinnet.lights": json.dumps(LIGHTS),
         "skinnet.physics.optics": model.config.optics,
         "skinnet.working_size": str(model.config.working_size),
-        "skinnet.trained_on": trained_on,
+        "skinnet.trained_on": model.trained_on,
         "skinnet.license": LICENSE,
     }
     onnx.helper.set_model_props(file, metadata)
     for node in (file.graph, *file.graph.node, *file.graph.value_info):
-        # The exporter notes where each node came from: a quarter of a small file, with local paths.
+        # The exporter stores the origin of each node: a quarter of a small file, with local paths.
         node.ClearField("metadata_props")
         node.ClearField("doc_string")
     onnx.save(file, path)
@@ -157,7 +167,7 @@ def _compare(model: SkinAutoencoder, beside: Path, target: Path) -> Report:
 def _run_both(
     model: SkinAutoencoder, session: onnxruntime.InferenceSession, size: tuple[int, int, int]
 ) -> tuple[list[np.ndarray], list[np.ndarray], float]:
-    photograph = example(*size)
+    photograph = make_example(*size)
     expected: tuple[Tensor, ...] = EncoderGraph(model)(photograph)
     inputs = {"image": photograph}
     if len(session.get_inputs()) > 1:

@@ -5,17 +5,15 @@ from pathlib import Path
 import pytest
 import torch
 
-from skinnet.network.autoencoder import AutoencoderConfig, SkinAutoencoder
-from skinnet.network.checkpoint import describe, load_checkpoint
+from skinnet.network import AutoencoderConfig, SkinAutoencoder
 from tools.mean import main
 
 
 def checkpoint(path: Path, seed: int, width: int = 8) -> SkinAutoencoder:
     torch.manual_seed(seed)
-    config = AutoencoderConfig(widths=(4, width))
-    model = SkinAutoencoder(config)
-    state = {f"model.{name}": value for name, value in model.state_dict().items()}
-    torch.save({"skinnet": describe(config, f"seed {seed}"), "state_dict": state}, path)
+    model = SkinAutoencoder(AutoencoderConfig(widths=(4, width)))
+    model.trained_on = f"seed {seed}"
+    torch.save(model.make_checkpoint(), path)
     return model
 
 
@@ -23,10 +21,12 @@ def test_weights_are_half_of_each(tmp_path: Path) -> None:
     names = [tmp_path / f"{name}.ckpt" for name in ("first", "last", "mean")]
     models = [checkpoint(path, seed) for seed, path in enumerate(names[:2])]
     assert main([str(names[0]), str(names[1]), "-o", str(names[2])]) == 0
-    found, trained_on = load_checkpoint(names[2])
-    first, last = (model.encoder.globals.weight for model in models)
-    torch.testing.assert_close(found.encoder.globals.weight, (first + last) / 2)
-    assert trained_on.startswith("seed 1; mean") and found(torch.rand(1, 3, 16, 16)) is not None
+    found = SkinAutoencoder.from_pretrained(names[2])
+    first, last = (model.encoder.global_outputs.weight for model in models)
+    torch.testing.assert_close(found.encoder.global_outputs.weight, (first + last) / 2)
+    assert (
+        found.trained_on.startswith("seed 1; mean") and found(torch.rand(1, 3, 16, 16)) is not None
+    )
 
 
 def test_a_file_goes_into_a_folder_that_is_there(

@@ -2,8 +2,8 @@
 
     python -m tools.mean EARLIER.ckpt LATER.ckpt -o MEAN.ckpt
 
-Near the end of a run weights wander around a minimum, and their mean lies closer to it (Izmailov
-et al. 2018). The result exports as any checkpoint does; training does not go on with it.
+Near the end of a run, weights move around a minimum, and their mean lies closer to it (Izmailov et
+al. 2018). The result can be exported as any checkpoint; training cannot continue from it.
 """
 
 import argparse
@@ -16,27 +16,32 @@ from torch import Tensor
 
 from skinnet.errors import InputError
 from skinnet.files import write_atomically
-from skinnet.network.checkpoint import checkpoint_of, load_checkpoint
+from skinnet.network import SkinAutoencoder
 
 
-def mean(earlier: Path, later: Path) -> dict[str, Any]:
-    """A checkpoint of the mean weights and of what both were trained on."""
-    (first, _), (last, trained_on) = load_checkpoint(earlier), load_checkpoint(later)
+def average(earlier: Path, later: Path) -> dict[str, Any]:
+    """Make a checkpoint of the mean weights; its training data are those of the later one.
+
+    Raises:
+        InputError: for files without a model, and for models of different shape or equal weights.
+    """
+    first, last = (SkinAutoencoder.from_pretrained(path) for path in (earlier, later))
     if first.config != last.config:
         raise InputError(f"{earlier} and {later} hold models of different shape; give two of one.")
     before, state = first.state_dict(), last.state_dict()
     if all(torch.equal(one, state[name]) for name, one in before.items()):
         raise InputError(f"{earlier} and {later} hold the same weights; give two different ones.")
-    last.load_state_dict({name: _between(before[name], one) for name, one in state.items()})
-    return checkpoint_of(last, f"{trained_on}; mean with the weights of an earlier end")
+    last.load_state_dict({name: _halfway(before[name], one) for name, one in state.items()})
+    last.trained_on += "; mean with the weights of an earlier end"
+    return last.make_checkpoint()
 
 
-def _between(a: Tensor, b: Tensor) -> Tensor:
+def _halfway(a: Tensor, b: Tensor) -> Tensor:
     return (a + b) / 2 if b.is_floating_point() else b
 
 
 def main(arguments: list[str] | None = None) -> int:
-    """Write the mean; 2 for input that it cannot use."""
+    """Write the mean; return 2 for input that cannot be used."""
     parser = argparse.ArgumentParser(description=(__doc__ or "").split("\n")[0])
     parser.add_argument("earlier", type=Path)
     parser.add_argument("later", type=Path)
@@ -45,7 +50,7 @@ def main(arguments: list[str] | None = None) -> int:
     try:
         if not given.output.parent.is_dir():
             raise InputError(f"{given.output.parent} is not a folder; make it first.")
-        checkpoint = mean(given.earlier, given.later)
+        checkpoint = average(given.earlier, given.later)
         with write_atomically(given.output) as path:
             torch.save(checkpoint, path)
     except (InputError, OSError) as error:

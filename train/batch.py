@@ -1,19 +1,24 @@
-"""What a training step is given."""
+"""The input of a training step."""
 
 from typing import NamedTuple
 
 from torch import Tensor
 
-from skinnet.network.autoencoder import SkinMaps
+from skinnet.network import SkinMaps
 from skinnet.physics import Capture
 
 
 class Batch(NamedTuple):
-    """Photographs in display sRGB [batch, 3, height, width], and what is known of them.
+    """Photographs and what is known of them.
 
-    `mask` is the skin mask, true or estimated. `truth`, `capture` and `albedo`, the linear sRGB of
-    the skin itself, are there for rendered portraits only. With `twice` the second half of the
-    batch shows the photographs of the first again, brighter or darker, warmer or colder.
+    Attributes:
+        photograph: Display sRGB in [0, 1], [batch, 3, height, width].
+        mask: Probability of skin, true or estimated, [batch, height, width].
+        truth: True maps, of rendered pictures only.
+        capture: True light and camera, of rendered pictures only.
+        albedo: Linear sRGB of the skin itself, of rendered pictures only.
+        paired: Whether the second half of the batch shows the photographs of the first half in
+            another exposure and white balance.
     """
 
     photograph: Tensor
@@ -21,4 +26,4 @@ class Batch(NamedTuple):
     truth: SkinMaps | None = None
     capture: Capture | None = None
     albedo: Tensor | None = None
-    twice: bool = False
+    paired: bool = False

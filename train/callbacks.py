@@ -11,10 +11,10 @@ from lightning.pytorch.loggers import TensorBoardLogger
 from PIL import Image
 from torch import Tensor
 
-from skinnet.network.autoencoder import F_BLOOD_MAX, F_MEL_MAX, Reading
+from skinnet.network import F_BLOOD_MAX, F_MEL_MAX, Reading
 from skinnet.physics import to_display
 from train.batch import Batch
-from train.task import Batches, by_name
+from train.task import Batches, name_batches
 
 
 class LastCheckpoint(Callback):
@@ -63,7 +63,7 @@ class PictureGrid(Callback):
     ) -> None:  # fmt: skip
         if batch_idx or trainer.sanity_checking or not trainer.is_global_zero:
             return
-        parts = by_name(batch)
+        parts = name_batches(batch)
         count = max(self.portraits // len(parts), 1)
         picture = torch.cat([grid(outputs[name], part, count) for name, part in parts.items()], 1)
         self.folder.mkdir(parents=True, exist_ok=True)

@@ -19,7 +19,7 @@ from lightning.pytorch.loggers import TensorBoardLogger
 from lightning.pytorch.utilities.exceptions import MisconfigurationException
 
 from skinnet.errors import InputError
-from skinnet.network.checkpoint import read_checkpoint
+from skinnet.network import read_checkpoint
 from skinnet.pipeline.sentence_parser import SentenceParser
 from train.callbacks import LastCheckpoint, PictureGrid
 from train.fitted import FittedFaces

@@ -56,7 +56,8 @@ class Pair(NamedTuple):
 
 class Crops(Dataset[Pair]):
     """Pairs in an endless stream: every epoch has all crops, shuffled, mirrored, and varied by its
-    own number and the seed."""
+    own number and the seed.
+    """
 
     def __init__(self, crops: list[Crop], seed: int):
         self.crops = crops
@@ -181,7 +182,8 @@ class Portraits(LightningDataModule):
 
     def _fixed(self, twin: DataLoader[Drawn]) -> CombinedLoader:
         """The photographs kept for validation, as they are, beside pictures of the twin; whichever
-        are fewer come again."""
+        are fewer come again.
+        """
         portraits: DataLoader[Crop] = DataLoader(self.crops["val"], self.batch_size)  # type: ignore[arg-type]
         return CombinedLoader({"portraits": portraits, "twin": twin}, "max_size_cycle")
 

@@ -1,4 +1,4 @@
-"""Training steps: by appearance always, by maps where there is truth."""
+"""Training steps: appearance for all pictures, maps for those with truth."""
 
 import math
 from dataclasses import dataclass
@@ -8,46 +8,65 @@ import torch
 from jsonargparse.typing import NonNegativeFloat, NonNegativeInt, PositiveFloat, PositiveInt
 from kornia.color import rgb_to_linear_rgb
 from lightning import LightningModule
-from torch import Tensor
+from torch import Tensor, nn
 from torch.optim import AdamW, Optimizer
 from torch.optim.lr_scheduler import LambdaLR
 
 from skinnet.errors import InputError
-from skinnet.network import losses
-from skinnet.network.autoencoder import AutoencoderConfig, Reading, SkinAutoencoder, SkinMaps
-from skinnet.network.checkpoint import describe
-from skinnet.network.encoder import WIDTHS
-from skinnet.network._weights import read_weights
+from skinnet.network import AutoencoderConfig, Reading, SkinAutoencoder, SkinMaps, losses
 from skinnet.physics import Capture
 from train.batch import Batch
-from train.metrics import measure
+from train.metrics import ReadingMetrics
 
 Batches = Batch | dict[str, Batch]
 """One kind of data, or several that each step sees together."""
 
+KINDS = ("synthetic", "portraits")
+"""Kinds of data, as they are named in logs. Data that come alone are called synthetic."""
+
 
 @dataclass
 class LossWeights:
-    """Weight of each loss. The first three count on every picture; mask, overlap, pigments,
-    fractions, leak, lighting and white balance where there is truth; a guessed mask, steadiness and
-    the priors, which stand in for it, where there is none."""
+    """Weight of each loss.
+
+    The first three losses apply to every picture. Those from `mask` to `white_balance` need truth.
+    The others apply to pictures without truth.
+
+    Attributes:
+        appearance: Reconstruction of skin, L1.
+        background_reconstruction: Reconstruction of what is not skin, L1.
+        off_skin_shading: Shading where there is no skin.
+        mask: Cross entropy of the skin mask.
+        soft_iou: Soft intersection over union of the skin mask.
+        pigment_l1: Pigments, L1 in cube roots.
+        pigment_mse: Pigments, standardised squared error.
+        error_shading_covariance: Covariance of melanin's error with shading.
+        lighting: Shading and specular reflection.
+        white_balance: White balance, L1.
+        augmentation_consistency: Pigments under changes of exposure and white balance.
+        mask_guess: Cross entropy with an estimated mask.
+        camera: Prior of camera and white balance.
+        specular: Sparsity of specular reflection.
+        smoothness: Smoothness of shading.
+        shading: Shading against the luminance of the photograph.
+    """
 
     appearance: NonNegativeFloat = 4.0
-    elsewhere: NonNegativeFloat = 0.2
-    stray: NonNegativeFloat = 2.0
+    background_reconstruction: NonNegativeFloat = 0.2
+    off_skin_shading: NonNegativeFloat = 2.0
     mask: NonNegativeFloat = 2.0
-    overlap: NonNegativeFloat = 1.0
+    soft_iou: NonNegativeFloat = 1.0
+    pigment_l1: NonNegativeFloat = 8.0
+    pigment_mse: NonNegativeFloat = 1.0
+    error_shading_covariance: NonNegativeFloat = 3.0
+    lighting: NonNegativeFloat = 1.0
+    white_balance: NonNegativeFloat = 2.0
+    augmentation_consistency: NonNegativeFloat = 3.0
+    mask_guess: NonNegativeFloat = 0.05
     camera: NonNegativeFloat = 0.005
     specular: NonNegativeFloat = 0.01
     smoothness: NonNegativeFloat = 0.02
     shading: NonNegativeFloat = 0.02
-    pigments: NonNegativeFloat = 8.0
-    fractions: NonNegativeFloat = 1.0
-    leak: NonNegativeFloat = 3.0
-    lighting: NonNegativeFloat = 1.0
-    white_balance: NonNegativeFloat = 2.0
-    steadiness: NonNegativeFloat = 3.0
-    mask_guess: NonNegativeFloat = 0.05
 
 
 class SkinTask(LightningModule):
@@ -60,22 +79,22 @@ class SkinTask(LightningModule):
         losses: weight of each loss.
         learning_rate: largest learning rate of AdamW, reached after the warm-up.
         weight_decay: of AdamW.
-        warmup_steps: steps in which the learning rate rises; it falls as a cosine to zero after.
-        weights: a .safetensors file to start from (fine-tuning). To go on with a run, use
+        warmup_steps: steps in which the learning rate rises; it then falls as a cosine to zero.
+        weights: a .safetensors file to start from (fine-tuning). To continue a run, use
             --ckpt_path instead.
     """
 
     def __init__(
         self,
         optics: str = "calibrated",
-        widths: list[PositiveInt] = list(WIDTHS),  # noqa: B006 - read, never written
+        widths: list[PositiveInt] = list(AutoencoderConfig.widths),  # noqa: B006 - never written
         working_size: PositiveInt = 128,
-        losses: LossWeights = LossWeights(),  # noqa: B008 - read, never written
+        losses: LossWeights = LossWeights(),  # noqa: B008 - never written
         learning_rate: PositiveFloat = 2e-3,
         weight_decay: NonNegativeFloat = 1e-4,
         warmup_steps: NonNegativeInt = 50,
         weights: str | None = None,
-    ):
+    ) -> None:
         super().__init__()
         model = SkinAutoencoder(
             AutoencoderConfig(optics, tuple(map(int, widths)), int(working_size))
@@ -88,62 +107,73 @@ class SkinTask(LightningModule):
         self.weight_decay = float(weight_decay)
         self.warmup_steps = int(warmup_steps)
         self.trained_on = "" if weights is None else f"{self._start_from(weights)}; then "
+        self.metrics = nn.ModuleDict({kind: ReadingMetrics() for kind in KINDS})
 
     def _start_from(self, path: str) -> str:
-        metadata, state = read_weights(path)
+        start = SkinAutoencoder.from_pretrained(path)
         try:
-            self.model.load_state_dict(state)
+            self.model.load_state_dict(start.state_dict())
         except RuntimeError as error:
             raise InputError(
                 f"{path} holds weights of another shape than this configuration's; give the widths "
                 "that it was trained with."
             ) from error
-        return metadata["skinnet.trained_on"]
+        return start.trained_on
 
     def forward(self, photograph: Tensor) -> Reading:
-        """Read photographs; the trunk runs in the trainer's precision, the physics in float32."""
+        """Read photographs: the encoder in the trainer's precision, the physics in float32."""
         photograph = photograph.contiguous(memory_format=torch.channels_last)
         maps, capture = self.model.encode(photograph)
         with torch.autocast(photograph.device.type, enabled=False):
             return Reading(maps, capture, self.model.decode(maps, capture))
 
     def training_step(self, batch: Batches, batch_idx: int) -> Tensor:
-        _, total, parts = self._losses(batch)
-        size = _size(batch)
+        """Compute and log the losses of a batch."""
+        _, total, parts = self._compute_losses(batch)
+        size = _count_pictures(batch)
         named = {f"train/{name}": value for name, value in parts.items()}
         self.log_dict(named, batch_size=size, sync_dist=True)
         self.log("train/loss", total, prog_bar=True, batch_size=size, sync_dist=True)
         return total
 
     def validation_step(self, batch: Batches, batch_idx: int) -> dict[str, Reading]:
+        """Log the loss and metrics of a validation batch."""
         return self._evaluate(batch, "val")
 
     def test_step(self, batch: Batches, batch_idx: int) -> dict[str, Reading]:
+        """Log the loss and metrics of a test batch."""
         return self._evaluate(batch, "test")
 
     def _evaluate(self, batch: Batches, split: str) -> dict[str, Reading]:
-        readings, total, _ = self._losses(batch)
-        self.log(f"{split}/loss", total, batch_size=_size(batch), sync_dist=True)
-        for name, part in by_name(batch).items():
-            found = measure(readings[name], part)
-            named = {f"{split}/{name}_{metric}": value for metric, value in found.items()}
-            self.log_dict(named, batch_size=len(part.photograph), sync_dist=True)
+        readings, total, _ = self._compute_losses(batch)
+        self.log(f"{split}/loss", total, batch_size=_count_pictures(batch), sync_dist=True)
+        for kind, part in name_batches(batch).items():
+            metrics: ReadingMetrics = self.metrics[kind]  # type: ignore[assignment]
+            with torch.autocast(part.photograph.device.type, enabled=False):
+                updated = metrics.update(readings[kind], part)
+            for name, metric in updated.items():
+                self.log(f"{split}/{kind}_{name}", metric, on_epoch=True, on_step=False)
         return readings
 
-    def _losses(self, batch: Batches) -> tuple[dict[str, Reading], Tensor, dict[str, Tensor]]:
-        named, parts = by_name(batch), {}
+    def _compute_losses(
+        self, batch: Batches
+    ) -> tuple[dict[str, Reading], Tensor, dict[str, Tensor]]:
+        named, parts = name_batches(batch), {}
         total = torch.zeros((), device=self.device)
         readings = self._read(named)
-        for name, part in named.items():
+        for kind, part in named.items():
             with torch.autocast(part.photograph.device.type, enabled=False):
-                for term, value in terms(readings[name], part).items():
-                    parts[f"{name}_{term}"] = value
-                    total = total + getattr(self.weight_of, term) * value
+                for name, value in compute_losses(readings[kind], part).items():
+                    parts[f"{kind}_{name}"] = value
+                    total = total + getattr(self.weight_of, name) * value
         return readings, total, parts
 
     def _read(self, batches: dict[str, Batch]) -> dict[str, Reading]:
-        """All kinds of pictures in one pass: batch normalisation would otherwise give each kind its
-        own statistics in training, and one mixture of them to both afterwards."""
+        """Read all kinds of pictures in one pass.
+
+        In passes of their own, batch normalisation would train with statistics of each kind and
+        then evaluate all kinds with a mixture of them.
+        """
         counts = [len(part.photograph) for part in batches.values()]
         whole = self(torch.cat([part.photograph for part in batches.values()]))
         maps, capture = (
@@ -157,62 +187,67 @@ class SkinTask(LightningModule):
         return dict(zip(batches, readings, strict=True))
 
     def configure_optimizers(self) -> dict[str, Any]:
+        """Set up AdamW with warm-up and cosine annealing."""
         optimizer: Optimizer = AdamW(
             self.parameters(), lr=self.learning_rate, weight_decay=self.weight_decay
         )
         steps = max(int(self.trainer.estimated_stepping_batches), 1)
-        schedule = LambdaLR(optimizer, lambda step: one_cycle(step, self.warmup_steps, steps))
+        schedule = LambdaLR(
+            optimizer, lambda step: warm_up_and_anneal(step, self.warmup_steps, steps)
+        )
         return {
             "optimizer": optimizer,
             "lr_scheduler": {"scheduler": schedule, "interval": "step"},
         }
 
     def on_save_checkpoint(self, checkpoint: dict[str, Any]) -> None:
+        """Describe the model, so that `SkinAutoencoder.from_pretrained` can load it."""
         data = getattr(self.trainer.datamodule, "described", "unknown data")
-        trained_on = f"{self.trained_on}{data}, {self.global_step} steps"
-        checkpoint["skinnet"] = describe(self.model.config, trained_on)
+        self.model.trained_on = f"{self.trained_on}{data}, {self.global_step} steps"
+        checkpoint["skinnet"] = self.model.describe()
 
 
-def by_name(batch: Batches) -> dict[str, Batch]:
-    """The batches of a step by the kind of their data."""
-    return batch if isinstance(batch, dict) else {"twin": batch}
+def name_batches(batch: Batches) -> dict[str, Batch]:
+    """Return the batches of a step by the kind of their data."""
+    return batch if isinstance(batch, dict) else {KINDS[0]: batch}
 
 
-def _size(batch: Batches) -> int:
-    return sum(len(part.photograph) for part in by_name(batch).values())
+def _count_pictures(batch: Batches) -> int:
+    return sum(len(part.photograph) for part in name_batches(batch).values())
 
 
-def terms(reading: Reading, batch: Batch) -> dict[str, Tensor]:
-    """Every loss that counts on this batch, by its name in `LossWeights`."""
+def compute_losses(reading: Reading, batch: Batch) -> dict[str, Tensor]:
+    """Compute every loss that applies to a batch, by its name in `LossWeights`."""
     linear, mask = rgb_to_linear_rgb(batch.photograph), batch.mask
     parts = {
         "appearance": losses.appearance_l1(reading.reconstruction, linear, mask),
-        "elsewhere": losses.appearance_l1(reading.reconstruction, linear, 1 - mask),
-        "stray": losses.off_skin_shading(reading.maps, mask),
+        "background_reconstruction": losses.appearance_l1(reading.reconstruction, linear, 1 - mask),
+        "off_skin_shading": losses.off_skin_shading(reading.maps, mask),
     }
     if batch.truth is not None and batch.capture is not None:
-        return parts | supervised(reading, batch.truth, batch.capture)
-    return parts | unsupervised(reading, batch, linear)
+        return parts | _compare_with_truth(reading, batch.truth, batch.capture)
+    return parts | _compute_priors(reading, batch, linear)
 
 
-def supervised(reading: Reading, truth: SkinMaps, capture: Capture) -> dict[str, Tensor]:
-    """The losses beside a known truth."""
+def _compare_with_truth(reading: Reading, truth: SkinMaps, capture: Capture) -> dict[str, Tensor]:
     maps = reading.maps
     return {
         "mask": losses.mask_cross_entropy(maps, truth.mask),
-        "overlap": losses.soft_iou(maps, truth.mask),
-        "pigments": losses.pigment_l1(maps, truth),
-        "fractions": losses.pigment_mse(maps, truth),
-        "leak": losses.error_shading_covariance(maps, truth),
+        "soft_iou": losses.soft_iou(maps, truth.mask),
+        "pigment_l1": losses.pigment_l1(maps, truth),
+        "pigment_mse": losses.pigment_mse(maps, truth),
+        "error_shading_covariance": losses.error_shading_covariance(maps, truth),
         "lighting": losses.lighting_error(maps, truth),
         "white_balance": losses.white_balance_l1(reading.capture, capture),
     }
 
 
-def unsupervised(reading: Reading, batch: Batch, linear: Tensor) -> dict[str, Tensor]:
-    """The priors that stand in for a truth; `linear` is the photograph in linear sRGB."""
+def _compute_priors(reading: Reading, batch: Batch, linear: Tensor) -> dict[str, Tensor]:
+    """Losses of photographs without truth; `linear` is the photograph in linear sRGB."""
     maps, mask = reading.maps, batch.mask
-    parts = {"steadiness": losses.augmentation_consistency(maps, mask)} if batch.twice else {}
+    parts = {}
+    if batch.paired:
+        parts["augmentation_consistency"] = losses.augmentation_consistency(maps, mask)
     return parts | {
         "mask_guess": losses.mask_cross_entropy(maps, mask),
         "camera": losses.camera_prior(reading.capture),
@@ -222,8 +257,24 @@ def unsupervised(reading: Reading, batch: Batch, linear: Tensor) -> dict[str, Te
     }
 
 
-def one_cycle(step: int, warmup: int, steps: int) -> float:
-    """Share of the largest learning rate: a linear rise, then half a cosine to zero."""
+def warm_up_and_anneal(step: int, warmup: int, steps: int) -> float:
+    """Scale the learning rate: a linear warm-up, then a cosine to zero.
+
+    These are the learning rates of torch's LinearLR and CosineAnnealingLR in a SequentialLR. Those
+    restore the planned number of steps with a checkpoint, so that the rate of a run that is resumed
+    with more steps would rise again. This function follows the new plan.
+
+    Args:
+        step: Steps that were taken.
+        warmup: Steps of the warm-up.
+        steps: Steps of the whole run.
+
+    Returns:
+        Share of the largest learning rate, in [0, 1].
+
+    Source:
+        Loshchilov & Hutter 2017, "SGDR", equation 5, without restarts.
+    """
     if step < warmup:
         return (step + 1) / (warmup + 1)
     done = min((step - warmup) / max(steps - warmup, 1), 1.0)

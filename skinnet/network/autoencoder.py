@@ -75,7 +75,9 @@ def _activate(
     """
     maps, global_outputs = _at_least_float32(maps), _at_least_float32(global_outputs)
     melanin, hemoglobin, shading, specular, mask = maps.unbind(1)
-    light, temperature, camera, balance = global_outputs.split([len(LIGHTS), 1, CAMERA_COMPONENTS, 2], -1)
+    light, temperature, camera, balance = global_outputs.split(
+        [len(LIGHTS), 1, CAMERA_COMPONENTS, 2], -1
+    )
     mired = _MIRED[0] + (_MIRED[1] - _MIRED[0]) * temperature.squeeze(-1).sigmoid()
     capture = Capture(
         light.softmax(-1),

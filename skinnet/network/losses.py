@@ -248,7 +248,7 @@ def pigment_l1(maps: SkinMaps, truth: SkinMaps) -> Scalar:
         >>> maps = SkinMaps(*values, torch.zeros(1, 3, 8, 8), mask)
         >>> truth = maps._replace(melanin=8 * maps.melanin)  # twice the cube root
         >>> round(pigment_l1(maps, truth).item(), 4), round((0.05 / F_MEL_MAX) ** (1 / 3), 4)
-        (0.488, 0.488)
+        (0.4881, 0.4881)
     """
     melanin = _root(maps.melanin, F_MEL_MAX) - _root(truth.melanin, F_MEL_MAX)
     blood = _root(maps.hemoglobin, F_BLOOD_MAX) - _root(truth.hemoglobin, F_BLOOD_MAX)
@@ -307,8 +307,8 @@ def error_shading_covariance(maps: SkinMaps, truth: SkinMaps) -> Scalar:
         >>> mask = torch.ones(1, 8, 8)
         >>> maps = SkinMaps(*values, torch.zeros(1, 3, 8, 8), mask)
         >>> bright = maps._replace(melanin=8 * maps.melanin, shading=2 * mask)
-        >>> round(error_shading_covariance(maps, bright).item(), 4)  # .488 times 1.15
-        0.5612
+        >>> round(error_shading_covariance(maps, bright).item(), 4)  # .4881 times 1.15
+        0.5613
     """
     error = _root(maps.melanin, F_MEL_MAX) - _root(truth.melanin, F_MEL_MAX)
     return -_mean(error * (truth.shading.clamp_max(2) - MEAN_SHADING), truth.mask)

@@ -10,11 +10,12 @@ import onnx
 import onnxruntime
 import pytest
 import torch
+from safetensors import safe_open
 from safetensors.torch import save_file
 
 from export.__main__ import main
-from skinnet.network.autoencoder import FORMAT, AutoencoderConfig, SkinAutoencoder
-from skinnet.network._weights import load_weights, read_weights, save_weights
+from skinnet.network import AutoencoderConfig, SkinAutoencoder
+from skinnet.network._weights import WEIGHTS_FORMAT
 
 
 @pytest.fixture(scope="module")
@@ -22,12 +23,19 @@ def exported(tmp_path_factory: pytest.TempPathFactory) -> Path:
     folder = tmp_path_factory.mktemp("export")
     torch.manual_seed(0)
     model = SkinAutoencoder(AutoencoderConfig(widths=(8, 12, 16), working_size=48))
-    save_weights(model, folder / "start.safetensors", "nothing at all")
+    model.trained_on = "nothing at all"
+    model.save_pretrained(folder / "start.safetensors")
     # A process of its own: the checks of shapes under pytest would fix the batch in the graph.
     command = [sys.executable, "-m", "export", "start.safetensors", "-o", "skin.onnx"]
     environment = {**os.environ, "PYTHONPATH": str(Path.cwd())}
     subprocess.run(command, cwd=folder, env=environment, check=True)
     return folder / "skin.onnx"
+
+
+def read_file(path: Path) -> tuple[dict[str, str], dict[str, torch.Tensor]]:
+    """Metadata and tensors of a safetensors file."""
+    with safe_open(path, framework="pt") as file:
+        return file.metadata(), {name: file.get_tensor(name) for name in file.keys()}
 
 
 def test_three_files_are_written_and_nothing_else(exported: Path) -> None:
@@ -51,7 +59,7 @@ def test_a_file_is_whole_and_says_what_it_is(exported: Path, name: str) -> None:
 def test_encoder_and_decoder_make_the_reconstruction_of_torch(exported: Path) -> None:
     from skinnet.physics import to_display
 
-    model = load_weights(exported.with_suffix(".safetensors"))
+    model = SkinAutoencoder.from_pretrained(exported.with_suffix(".safetensors"))
     photograph = torch.randint(0, 256, (2, 37, 53, 3), dtype=torch.uint8)
     encoder = onnxruntime.InferenceSession(exported)
     decoder = onnxruntime.InferenceSession(exported.with_suffix(".decoder.onnx"))
@@ -102,7 +110,7 @@ def test_another_format_is_refused(tmp_path: Path, capsys: pytest.CaptureFixture
 def test_weights_of_an_earlier_format_are_refused(
     exported: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    metadata, state = read_weights(exported.with_suffix(".safetensors"))
+    metadata, state = read_file(exported.with_suffix(".safetensors"))
     path = tmp_path / "old.safetensors"
     save_file(state, path, metadata | {"skinnet.format": "2"})
     assert main([str(path)]) == 2
@@ -112,7 +120,7 @@ def test_weights_of_an_earlier_format_are_refused(
 def test_weights_that_are_not_those_described_are_refused(
     exported: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    metadata, state = read_weights(exported.with_suffix(".safetensors"))
+    metadata, state = read_file(exported.with_suffix(".safetensors"))
     path = tmp_path / "other.safetensors"
     for wrong in (
         (state, metadata | {"skinnet.config": "{}"}),
@@ -128,7 +136,7 @@ def test_a_checkpoint_without_its_model_is_refused(
     tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
     path = tmp_path / "model.ckpt"
-    torch.save({"skinnet": {"format": FORMAT}, "state_dict": {}}, path)
+    torch.save({"skinnet": {"format": WEIGHTS_FORMAT}, "state_dict": {}}, path)
     assert main([str(path), "-o", str(tmp_path / "out.onnx")]) == 2
     assert f"{path} does not hold the model" in capsys.readouterr().err
 
@@ -167,9 +175,9 @@ def test_an_output_that_cannot_be_written_is_refused_first(
 def test_weights_survive_a_round_trip(tmp_path: Path) -> None:
     model = SkinAutoencoder(AutoencoderConfig(widths=(4, 8), working_size=32))
     path = tmp_path / "weights.safetensors"
-    save_weights(model, path, "a test")
-    again = load_weights(path)
-    assert again.config == model.config
-    assert read_weights(path)[0]["skinnet.trained_on"] == "a test"
+    model.trained_on = "a test"
+    model.save_pretrained(path)
+    again = SkinAutoencoder.from_pretrained(path)
+    assert again.config == model.config and again.trained_on == "a test"
     state = again.state_dict()
     assert all(torch.equal(value, state[name]) for name, value in model.state_dict().items())

@@ -10,6 +10,7 @@ import torch
 import yaml
 from lightning import Trainer
 
+from skinnet.network import AutoencoderConfig, SkinAutoencoder
 from train.callbacks import LastCheckpoint, PictureGrid
 from train.cli import main
 
@@ -48,7 +49,7 @@ def test_a_resumed_run_has_the_losses_and_weights_of_one_that_never_stopped(
     fit: Fit, tmp_path: Path, stopped_after: str, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     # The learning rate follows the number of steps planned, which a shorter run would change.
-    monkeypatch.setattr("train.task.one_cycle", lambda step, warmup, steps: 1.0)
+    monkeypatch.setattr("train.task.warm_up_and_anneal", lambda step, warmup, steps: 1.0)
     whole, parts = tmp_path / "whole", tmp_path / "parts"
     assert fit(whole, "--trainer.max_epochs=3") == 0
     assert fit(parts, stopped_after) == 0
@@ -157,7 +158,7 @@ def test_a_checkpoint_that_is_none_is_refused(
         ("--model.nonsense=1", "nonsense"),
         ("--model.learning_rate=-1", "learning_rate"),
         ("--data.init_args.batch_size=0", "batch_size"),
-        ("--model.losses.pigment_l1=-3", "pigments"),
+        ("--model.losses.pigment_l1=-3", "pigment_l1"),
         ("--data.class_path=Nothing", "class_path"),
     ],
 )
@@ -195,13 +196,10 @@ def test_an_unknown_preset_is_named(
 def test_weights_to_start_from_are_their_own_argument(
     fit: Fit, tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    from skinnet.network.autoencoder import AutoencoderConfig, SkinAutoencoder
-    from skinnet.network._weights import save_weights
-
     start = tmp_path / "start.safetensors"
-    save_weights(SkinAutoencoder(AutoencoderConfig(widths=(4, 8))), start, "nothing")
+    SkinAutoencoder(AutoencoderConfig(widths=(4, 8))).save_pretrained(start)
     assert fit(tmp_path / "run", f"--model.weights={start}", "--trainer.max_steps=1") == 0
     other = tmp_path / "other.safetensors"
-    save_weights(SkinAutoencoder(AutoencoderConfig(widths=(4, 6))), other, "nothing")
+    SkinAutoencoder(AutoencoderConfig(widths=(4, 6))).save_pretrained(other)
     assert fit(tmp_path / "run2", f"--model.weights={other}") == 2
     assert "another shape" in capsys.readouterr().err

@@ -8,10 +8,10 @@ import pytest
 import torch
 from torch import Tensor
 
-from skinnet.network.checkpoint import load_checkpoint, read_checkpoint
+from skinnet.network import SkinAutoencoder, read_checkpoint
 from train.callbacks import LastCheckpoint
 from train.guards import listed, not_finite
-from train.task import SkinTask, terms
+from train.task import SkinTask, compute_losses
 
 Fit = Callable[..., int]
 
@@ -26,12 +26,12 @@ def break_loss(monkeypatch: pytest.MonkeyPatch, term: str, call: int) -> None:
     calls = iter(range(1, 1000))
 
     def broken(*arguments: object) -> dict[str, Tensor]:
-        found = terms(*arguments)  # type: ignore[arg-type]
+        found = compute_losses(*arguments)  # type: ignore[arg-type]
         if next(calls) == call:
             found[term] = found[term] * float("nan")
         return found
 
-    monkeypatch.setattr("train.task.terms", broken)
+    monkeypatch.setattr("train.task.compute_losses", broken)
 
 
 @pytest.mark.usefixtures("saving_every_step")
@@ -42,10 +42,10 @@ def test_a_loss_that_is_no_number_stops_training_at_the_last_good_step(
     break_loss(monkeypatch, "lighting", 7)  # four steps, a validation batch, two steps
     assert fit(run, "--trainer.max_epochs=2") == 2
     said = capsys.readouterr().err
-    assert "step 5, where losses are not finite: train/twin_lighting, train/loss." in said
+    assert "step 5, where losses are not finite: train/synthetic_lighting, train/loss." in said
     assert f"--ckpt_path {run / 'last.ckpt'}" in said
     assert read_checkpoint(run / "last.ckpt")["global_step"] == 5
-    model, _ = load_checkpoint(run / "last.ckpt")
+    model = SkinAutoencoder.from_pretrained(run / "last.ckpt")
     assert not not_finite(model.state_dict())
     assert fit(run, f"--ckpt_path={run / 'last.ckpt'}", "--trainer.max_epochs=2") == 0
 
@@ -53,10 +53,10 @@ def test_a_loss_that_is_no_number_stops_training_at_the_last_good_step(
 def test_without_a_checkpoint_the_remedy_is_a_new_run(
     fit: Fit, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    break_loss(monkeypatch, "pigments", 1)
+    break_loss(monkeypatch, "pigment_l1", 1)
     assert fit(tmp_path / "run", "--trainer.max_epochs=1") == 2
     said = capsys.readouterr().err
-    assert "step 0" in said and "train/twin_pigments" in said
+    assert "step 0" in said and "train/synthetic_pigment_l1" in said
     assert "learning_rate" in said and "ckpt_path" not in said
     assert not (tmp_path / "run" / "last.ckpt").exists()
 

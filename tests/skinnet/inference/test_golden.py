@@ -7,7 +7,7 @@ import pytest
 import torch
 
 from skinnet.inference import SHIPPED_ENCODER, open_model
-from skinnet.network._weights import load_weights
+from skinnet.network import SkinAutoencoder
 from tools.golden import GOLDEN, numbers, photograph
 
 OUTPUTS = json.loads(GOLDEN.read_text(encoding="utf-8"))
@@ -21,7 +21,7 @@ def by_onnxruntime() -> dict[str, np.ndarray]:
 def by_torch() -> dict[str, np.ndarray]:
     image = torch.from_numpy(photograph()).movedim(-1, 1).float() / 255
     with torch.no_grad():
-        maps, capture = load_weights().encode(image)
+        maps, capture = SkinAutoencoder.from_pretrained().encode(image)
     named = {**maps._asdict(), **capture._asdict(), "offset": maps.offset.movedim(1, -1)}
     return {name: value.numpy() for name, value in named.items()}
 

@@ -1,7 +1,5 @@
 """The model that ships reads a photograph as skin, in torch and in onnxruntime alike."""
 
-from pathlib import Path
-
 import numpy as np
 import pytest
 import torch
@@ -11,10 +9,10 @@ from skimage.data import astronaut
 from skinnet import Decomposer, Decomposition
 from skinnet.images import srgb_to_linear
 from skinnet.inference import SHIPPED_ENCODER
-from skinnet.network._weights import SHIPPED, load_weights
+from skinnet.network import SkinAutoencoder
 from skinnet.physics import to_display
 
-MODELS = SHIPPED.parent
+MODELS = SHIPPED_ENCODER.parent
 
 
 @pytest.fixture(scope="module")
@@ -41,7 +39,9 @@ def test_torch_and_onnxruntime_agree() -> None:
     encoder, decoder = Decomposer().encoder, Decomposer().decoder
     codes = encoder.run({"image": photograph})
     with torch.no_grad():
-        reading = load_weights()(torch.from_numpy(photograph).movedim(-1, 1) / 255)
+        reading = SkinAutoencoder.from_pretrained()(
+            torch.from_numpy(photograph).movedim(-1, 1) / 255
+        )
     maps = reading.maps._replace(offset=reading.maps.offset.movedim(1, -1))
     for name in ("melanin", "hemoglobin", "shading", "mask", "offset"):
         assert np.abs(codes[name] - getattr(maps, name).numpy()).max() < 1e-3
@@ -87,4 +87,3 @@ def test_the_shipped_files_are_in_the_package() -> None:
     names = {path.name for path in SHIPPED_ENCODER.parent.iterdir()}
     files = {"skin.onnx", "skin.decoder.onnx", "skin.safetensors"}
     assert names == files | {"MODEL_CARD.md", "CHANGELOG.md"}
-    assert Path(SHIPPED).is_file()

@@ -1,22 +1,21 @@
-"""Encoder and controls: any size in, physical ranges out."""
+"""The autoencoder takes any size, and its outputs are in physical ranges."""
 
 from copy import deepcopy
+from pathlib import Path
 
 import pytest
 import torch
 
-from skinnet.network.autoencoder import (
+from skinnet.network import (
     CAMERA_MAX,
     F_BLOOD_MAX,
     F_MEL_MAX,
-    GLOBALS,
-    MAPS,
     SHADING_MAX,
     WHITE_BALANCE_MAX,
     AutoencoderConfig,
     SkinAutoencoder,
-    controls,
 )
+from skinnet.network.autoencoder import _GLOBAL_CHANNELS, _MAP_CHANNELS, _activate
 from skinnet.physics import LIGHTS, SkinDecoder
 
 
@@ -46,9 +45,11 @@ def test_the_reconstruction_is_the_decoder_s(model: SkinAutoencoder) -> None:
 
 
 @pytest.mark.parametrize("raw", [-1e4, -3.0, 0.0, 3.0, 1e4])
-def test_controls_stay_in_their_ranges(raw: float) -> None:
+def test_activations_stay_in_their_ranges(raw: float) -> None:
     white = torch.ones(1, 3, 2, 2)
-    maps, capture = controls(torch.full((1, MAPS, 2, 2), raw), torch.full((1, GLOBALS), raw), white)
+    maps, capture = _activate(
+        torch.full((1, _MAP_CHANNELS, 2, 2), raw), torch.full((1, _GLOBAL_CHANNELS), raw), white
+    )
     for value, low, high in (
         (maps.melanin, 0, F_MEL_MAX),
         (maps.hemoglobin, 0, F_BLOOD_MAX),
@@ -65,8 +66,8 @@ def test_controls_stay_in_their_ranges(raw: float) -> None:
 
 
 def test_raw_zero_is_ordinary_skin_in_ordinary_light() -> None:
-    raw = torch.zeros(1, MAPS, 1, 1), torch.zeros(1, GLOBALS)
-    maps, capture = controls(*raw, torch.zeros(1, 3, 1, 1))
+    raw = torch.zeros(1, _MAP_CHANNELS, 1, 1), torch.zeros(1, _GLOBAL_CHANNELS)
+    maps, capture = _activate(*raw, torch.zeros(1, 3, 1, 1))
     assert 0.02 < maps.melanin.item() < 0.1 and 0.01 < maps.hemoglobin.item() < 0.05
     assert maps.shading.item() == pytest.approx(1, abs=0.02) and maps.specular.item() < 0.05
     assert 5000 < capture.temperature.item() < 8000
@@ -74,29 +75,32 @@ def test_raw_zero_is_ordinary_skin_in_ordinary_light() -> None:
 
 
 def test_without_skin_the_offset_is_the_photograph() -> None:
-    raw, linear = torch.zeros(1, MAPS, 2, 2), torch.rand(1, 3, 2, 2)
+    raw, linear = torch.zeros(1, _MAP_CHANNELS, 2, 2), torch.rand(1, 3, 2, 2)
     raw[:, -1] = torch.tensor([[-1e4, 0.0], [1e4, 0.0]])
     raw.requires_grad_()
-    maps, _ = controls(raw, torch.zeros(1, GLOBALS), linear)
+    maps, _ = _activate(raw, torch.zeros(1, _GLOBAL_CHANNELS), linear)
     left = torch.tensor([[1.0, 0.5], [0.0, 0.5]])
     torch.testing.assert_close(maps.offset, left * linear)
     (slope,) = torch.autograd.grad(maps.offset.sum() + 0 * raw.sum(), raw)
-    assert not slope.any()  # or no skin at all would explain a photograph best
+    assert not slope.any()  # or the best explanation would be no skin at all
 
 
-def test_votes_reach_the_white_balance_directly(model: SkinAutoencoder) -> None:
+def test_the_vote_on_the_tint_reaches_the_white_balance_directly(model: SkinAutoencoder) -> None:
     model, photograph = deepcopy(model), torch.rand(1, 3, 24, 20)
     with torch.no_grad():
-        model.encoder.weigh[-1].weight.zero_()  # the other way
+        model.encoder.refine[-1].weight.zero_()  # the indirect path
         before = model.encode(photograph)[1].white_balance
-        model.encoder.gather.expect.bias += 0.1
+        model.encoder.pooling.expected_chroma.bias += 0.1
         assert (model.encode(photograph)[1].white_balance != before).all()
 
 
-def test_controls_of_half_precision_are_float32_and_float64_stays() -> None:
+def test_activations_of_half_precision_are_float32_and_float64_stays() -> None:
     for given, kept in ((torch.bfloat16, torch.float32), (torch.float64, torch.float64)):
-        raw = torch.zeros(1, MAPS, 2, 2, dtype=given), torch.zeros(1, GLOBALS, dtype=given)
-        maps, capture = controls(*raw, torch.zeros(1, 3, 2, 2))
+        raw = (
+            torch.zeros(1, _MAP_CHANNELS, 2, 2, dtype=given),
+            torch.zeros(1, _GLOBAL_CHANNELS, dtype=given),
+        )
+        maps, capture = _activate(*raw, torch.zeros(1, 3, 2, 2))
         assert maps.melanin.dtype == kept and capture.light.dtype == kept
 
 
@@ -105,3 +109,19 @@ def test_gradients_of_the_appearance_reach_every_weight(model: SkinAutoencoder) 
     reading = model(torch.rand(2, 3, 16, 16))
     (reading.reconstruction.square().mean() + reading.maps.mask.mean()).backward()
     assert all(value.grad is not None for value in model.encoder.parameters())
+
+
+def test_without_a_path_the_shipped_network_is_loaded() -> None:
+    model = SkinAutoencoder.from_pretrained()
+    assert not model.training and model.config.working_size == 160
+    assert model.trained_on.startswith("1000 ICT-FaceKit and procedural heads")
+
+
+def test_a_checkpoint_of_the_model_alone_is_loaded(model: SkinAutoencoder, tmp_path: Path) -> None:
+    model = deepcopy(model)
+    model.trained_on = "nothing"
+    torch.save(model.make_checkpoint(), tmp_path / "model.ckpt")
+    again = SkinAutoencoder.from_pretrained(tmp_path / "model.ckpt")
+    assert again.config == model.config and again.trained_on == "nothing"
+    state = again.state_dict()
+    assert all(torch.equal(value, state[name]) for name, value in model.state_dict().items())

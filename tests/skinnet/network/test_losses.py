@@ -1,10 +1,9 @@
-"""Losses are zero where they should be, and say what they mean."""
+"""Losses are zero for perfect readings, and have the values of their equations."""
 
 import pytest
 import torch
 
-from skinnet.network import losses
-from skinnet.network.autoencoder import F_MEL_MAX, SkinMaps
+from skinnet.network import F_MEL_MAX, SkinMaps, losses
 from skinnet.physics import Capture
 
 
@@ -31,7 +30,9 @@ def test_a_perfect_reading_costs_nothing() -> None:
     ones = torch.ones(2, 8, 8)
     assert losses.appearance_l1(photograph, photograph, ones) == 0
     assert losses.pigment_l1(truth, truth) == 0 and losses.lighting_error(truth, truth) == 0
-    assert losses.pigment_mse(truth, truth) == 0 and losses.error_shading_covariance(truth, truth) == 0
+    assert (
+        losses.pigment_mse(truth, truth) == 0 and losses.error_shading_covariance(truth, truth) == 0
+    )
     assert losses.soft_iou(truth, ones) == pytest.approx(0, abs=1e-6)
     assert losses.camera_prior(capture()) == 0
     assert losses.off_skin_shading(truth, ones) == 0
@@ -49,24 +50,24 @@ def test_appearance_counts_where_the_weight_is() -> None:
     assert losses.appearance_l1(photograph + 0.25, photograph, weight) == pytest.approx(0.25)
 
 
-def test_where_a_photograph_ends_brighter_is_right_and_darker_is_not() -> None:
+def test_saturated_pixels_may_be_predicted_brighter_but_not_darker() -> None:
     photograph, ones = torch.ones(2, 3, 8, 8), torch.ones(2, 8, 8)
     made = torch.full_like(photograph, 1.5).requires_grad_()
     assert losses.appearance_l1(made, photograph, ones) == 0
     assert losses.appearance_l1(made - 0.75, photograph, ones).item() == pytest.approx(0.25)
-    # Only where it ends: elsewhere too bright is wrong, and is drawn back however bright.
+    # Below saturation, too bright is wrong and has a gradient.
     loss = losses.appearance_l1(made, 0.9 * photograph, ones)
     loss.backward()
     assert loss.item() == pytest.approx(0.6) and made.grad is not None and (made.grad > 0).all()
 
 
-def test_pigments_are_compared_in_cube_roots() -> None:
+def test_pigment_l1_is_in_cube_roots() -> None:
     truth, guess = maps(), maps(melanin=torch.full((2, 8, 8), 8 * 0.05))
     root = (0.05 / 0.43) ** (1 / 3)
     assert losses.pigment_l1(guess, truth).item() == pytest.approx(root, abs=1e-4)
 
 
-def test_fractions_are_compared_in_their_spreads() -> None:
+def test_pigment_mse_is_in_standard_deviations() -> None:
     melanin, blood = losses.PIGMENT_SD
     guess = maps(melanin=0.05 + torch.full((2, 8, 8), 2 * melanin))
     assert losses.pigment_mse(guess, maps()).item() == pytest.approx(4, rel=1e-4)
@@ -74,7 +75,7 @@ def test_fractions_are_compared_in_their_spreads() -> None:
     assert losses.pigment_mse(guess, maps()).item() == pytest.approx(1, rel=1e-4)
 
 
-def test_a_leak_rewards_an_error_that_rises_with_the_light() -> None:
+def test_error_shading_covariance_rewards_an_error_that_rises_with_shading() -> None:
     # The gradient tilts an absolute error towards more melanin where the light is strong.
     shading = torch.linspace(0, 2 * losses.MEAN_SHADING, 64).reshape(1, 8, 8).expand(2, 8, 8)
     guess = torch.full((2, 8, 8), 0.05, requires_grad=True)
@@ -85,10 +86,12 @@ def test_a_leak_rewards_an_error_that_rises_with_the_light() -> None:
     found = losses.error_shading_covariance(maps(melanin=guess), maps(shading=shading))
     assert found.item() == pytest.approx(0, abs=1e-6)
     (slope,) = torch.autograd.grad(found, guess)
-    assert (slope[shading > losses.MEAN_SHADING] < 0).all() and (slope[shading < losses.MEAN_SHADING] > 0).all()
+    assert (slope[shading > losses.MEAN_SHADING] < 0).all() and (
+        slope[shading < losses.MEAN_SHADING] > 0
+    ).all()
 
 
-def test_overlap_is_of_what_counts_as_skin() -> None:
+def test_soft_iou_is_of_masks_above_one_half() -> None:
     skin = torch.zeros(2, 8, 8)
     skin[:, :4] = 0.6
     skin[:, 4:] = 0.4
@@ -100,14 +103,14 @@ def test_overlap_is_of_what_counts_as_skin() -> None:
     assert losses.soft_iou(maps(), 0.1 * skin) > 0.9
 
 
-def test_shading_pseudo_leaves_the_level_open() -> None:
+def test_shading_from_luminance_ignores_the_level() -> None:
     photograph = torch.full((2, 3, 8, 8), 0.2)
     for level in (0.3, 3.0):
         found = maps(shading=torch.full((2, 8, 8), level))
         assert losses.shading_from_luminance(found, photograph, torch.ones(2, 8, 8)) < 1e-5
 
 
-def test_priors_grow_with_what_they_restrain() -> None:
+def test_priors_grow_with_what_they_penalise() -> None:
     assert losses.camera_prior(capture(camera=1.0)).item() == pytest.approx(0.5)
     assert losses.camera_prior(capture(balance=0.05)).item() == pytest.approx(0.5)
     ones = torch.ones(2, 8, 8)
@@ -115,13 +118,13 @@ def test_priors_grow_with_what_they_restrain() -> None:
     assert losses.off_skin_shading(maps(), 0 * ones) == 1
 
 
-def test_white_balance_is_in_units_of_its_spread() -> None:
+def test_white_balance_l1_is_in_standard_deviations() -> None:
     found = losses.white_balance_l1(capture(balance=0.05), capture())
     assert found.item() == pytest.approx(1)
 
 
 def test_the_loss_of_a_batch_is_the_mean_of_those_of_its_halves() -> None:
-    # Then processes that share a batch have its loss between them.
+    # Then the mean over processes that share a batch is the loss of the batch.
     torch.manual_seed(0)
     photograph, made = torch.rand(2, 4, 3, 32, 32)
     mask = torch.rand(4, 32, 32) * torch.tensor([0.0, 0.1, 0.5, 1.0])[:, None, None]
@@ -150,7 +153,7 @@ def test_the_loss_of_a_batch_is_the_mean_of_those_of_its_halves() -> None:
     torch.testing.assert_close(found(slice(0, 4)), halves)
 
 
-def test_the_skin_mask_is_a_cross_entropy_that_lets_pass_what_is_no_number() -> None:
+def test_the_mask_loss_is_a_cross_entropy_that_accepts_nan() -> None:
     guess, truth = torch.rand(2, 8, 8), torch.rand(2, 8, 8)
     found = losses.mask_cross_entropy(maps(mask=guess), truth)
     torch.testing.assert_close(found, torch.nn.functional.binary_cross_entropy(guess, truth))
@@ -175,7 +178,7 @@ def test_gradients_are_finite_at_the_edges() -> None:
         assert gradient is None or gradient.isfinite().all()
 
 
-def test_steadiness_compares_the_two_halves() -> None:
+def test_augmentation_consistency_compares_the_two_halves() -> None:
     seen = SkinMaps(
         *(torch.full((4, 6, 6), value) for value in (0.05, 0.04, 1.0, 0.0)),
         torch.zeros(4, 3, 6, 6),
