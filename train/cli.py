@@ -32,22 +32,39 @@ from train.task import SkinTask
 __all__ = ["FittedFaces", "Portraits", "SkinCLI", "SyntheticFaces", "main"]
 
 
+_RENAMED = {
+    "model.losses.elsewhere": "model.losses.background_reconstruction",
+    "model.losses.stray": "model.losses.off_skin_shading",
+    "model.losses.overlap": "model.losses.soft_iou",
+    "model.losses.pigments": "model.losses.pigment_l1",
+    "model.losses.fractions": "model.losses.pigment_mse",
+    "model.losses.leak": "model.losses.error_shading_covariance",
+    "model.losses.steadiness": "model.losses.augmentation_consistency",
+    "TwinFaces": "SyntheticFaces",
+    "twin": "synthetic",
+}
+"""Keys and classes of version 0.1, and what they are called today."""
+
+
 class _TrainParser(SentenceParser, LightningArgumentParser):
     """Lightning's parser with errors in one sentence."""
 
     help_command = "python -m train fit --help"
+    renamed = _RENAMED
 
 
 class SkinCLI(LightningCLI):
     """LightningCLI with one fixed run directory and no silent restarts."""
 
     def add_arguments_to_parser(self, parser: LightningArgumentParser) -> None:
+        """Add the folder of the run."""
         parser.add_argument(
             "--run", type=str, default="runs/run", help="Folder of checkpoints, curves, pictures."
         )
 
     @staticmethod
     def subcommands() -> dict[str, set[str]]:
+        """Return the commands that there are, with the arguments that they do not take."""
         kept = ("fit", "validate", "test")
         return {name: LightningCLI.subcommands()[name] for name in kept}
 
@@ -56,10 +73,12 @@ class SkinCLI(LightningCLI):
         check_checkpoint(self.config.subcommand, self.config[self.config.subcommand].ckpt_path)
 
     def before_instantiate_classes(self) -> None:
-        # Loading goes through weights_only: a checkpoint is data, never a pickle.
+        """Load checkpoints as data."""
+        # With weights_only no code in a checkpoint is run.
         self.config[self.subcommand].weights_only = True
 
     def instantiate_trainer(self, **kwargs: Any) -> Trainer:
+        """Make a trainer with the loggers and callbacks of every run."""
         config = self.config[self.subcommand]
         run = config.run
         loggers = [TensorBoardLogger(run, name="", version=""), CurveLogger(run)]
@@ -74,11 +93,11 @@ class SkinCLI(LightningCLI):
         callbacks += [PictureGrid(run), LearningRateMonitor()]
         callbacks += _as_list(self.config_init[self.subcommand].trainer.callbacks)
         if config.trainer.enable_progress_bar is not False:
-            callbacks.append(_bar())
+            callbacks.append(_make_progress_bar())
         trainer = super().instantiate_trainer(
             logger=loggers, callbacks=callbacks, default_root_dir=run, **kwargs
         )
-        # Of several processes only the first may rename; a trainer knows which one that is.
+        # Only the first of several processes may rename; the trainer knows which one it is.
         if self.subcommand == "fit" and config.ckpt_path is None and trainer.is_global_zero:
             keep_previous(Path(run))
         return trainer
@@ -91,7 +110,11 @@ def _as_list(callbacks: Callback | list[Callback] | None) -> list[Callback]:
 
 
 def check_checkpoint(subcommand: str, path: str | None) -> None:
-    """Raise `InputError` unless the checkpoint that a command needs is there and ours."""
+    """Check the checkpoint that a command needs.
+
+    Raises:
+        InputError: if it is missing, broken, or not of skinnet.
+    """
     if path is None:
         if subcommand != "fit":
             raise InputError(f"{subcommand} needs a trained model: add --ckpt_path RUN/best.ckpt.")
@@ -100,13 +123,14 @@ def check_checkpoint(subcommand: str, path: str | None) -> None:
 
 
 RUN_FILES = ("*.ckpt", "metrics.csv", "events.out.tfevents.*", "skipped.csv")
-"""What training leaves in the folder of a run, even of one that came to nothing."""
+"""Files that training writes into the folder of a run."""
 
 
 def keep_previous(run: Path) -> None:
-    """Rename a finished or broken-off run to the next free number, so that nothing is lost.
+    """Rename the folder of an earlier run to the next free number, so that nothing is lost.
 
-    Raises `InputError` for a folder with files in it that is no run's.
+    Raises:
+        InputError: for a folder whose files are not those of a run.
     """
     run = run.resolve()
     if not run.is_dir() or not any(run.iterdir()):
@@ -119,12 +143,12 @@ def keep_previous(run: Path) -> None:
     print(f"{run} holds an earlier run; it is kept as {kept}.", file=sys.stderr)
 
 
-def _bar() -> RichProgressBar | TQDMProgressBar:
+def _make_progress_bar() -> RichProgressBar | TQDMProgressBar:
     # Off a terminal Rich shows its last frame only.
     return RichProgressBar() if sys.stderr.isatty() else TQDMProgressBar(refresh_rate=50)
 
 
-_NOISE = (
+_EXPECTED_WARNINGS = (
     "LightningCLI's args parameter is intended",  # the tests' way in
     r"(?s)\s*.*was deprecated in v4",  # Lightning uses it
     r"\s*By default only one JsonargparseDeprecationWarning",
@@ -134,19 +158,19 @@ _NOISE = (
     "Checkpoint directory .* exists and is not empty",  # the run folder, on purpose
     "The number of training batches .* is smaller than the logging interval",
 )
-"""Warnings of Lightning's about what is meant to be so."""
+"""Warnings of Lightning about intended settings."""
 
 
-def _no_advert(record: logging.LogRecord) -> bool:
+def _is_no_advertisement(record: logging.LogRecord) -> bool:
     return "litlogger" not in record.getMessage()
 
 
 def main(arguments: Sequence[str] | None = None) -> int:
-    """Run a training command; 0 on success, 2 with a sentence on stderr for bad input."""
-    logging.getLogger("lightning.pytorch.utilities.rank_zero").addFilter(_no_advert)
+    """Run a training command; return 0, or 2 with a sentence on stderr for bad input."""
+    logging.getLogger("lightning.pytorch.utilities.rank_zero").addFilter(_is_no_advertisement)
     try:
         with warnings.catch_warnings():
-            for message in _NOISE:
+            for message in _EXPECTED_WARNINGS:
                 warnings.filterwarnings("ignore", message)
             SkinCLI(
                 SkinTask,

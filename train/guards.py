@@ -1,4 +1,4 @@
-"""What stops a training that can no longer come to anything."""
+"""Stops a training whose losses or weights are not finite."""
 
 from collections.abc import Mapping
 from pathlib import Path
@@ -13,40 +13,47 @@ from skinnet.errors import InputError
 
 
 class FiniteGuard(Callback):
-    """Raises `InputError` for a loss that is not finite, before the weights take a step with it,
-    and for weights that are not, before any checkpoint is written of them.
+    """Raises `InputError` for losses and weights that are not finite.
 
-    Losses are those that are logged, which all processes share, so that all of them stop.
+    A loss is checked before the weights take a step with it, and weights are checked before a
+    checkpoint is written. The logged losses are checked, which all processes share, so that all of
+    them stop.
+
+    Args:
+        folder: The run's, where the last good checkpoint is.
     """
 
-    def __init__(self, folder: str):
+    def __init__(self, folder: str) -> None:
         self.last = Path(folder) / "last.ckpt"
 
     def on_before_backward(
         self, trainer: Trainer, pl_module: LightningModule, loss: Tensor
     ) -> None:
+        """Check the training losses."""
         self._check(trainer, pl_module, "train/")
 
     def on_validation_end(self, trainer: Trainer, pl_module: LightningModule) -> None:
+        """Check the validation loss of a training."""
         if trainer.state.fn == TrainerFn.FITTING:
             self._check(trainer, pl_module, "val/loss")
 
     def on_save_checkpoint(
         self, trainer: Trainer, pl_module: LightningModule, checkpoint: dict[str, Any]
     ) -> None:
-        if broken := not_finite(checkpoint["state_dict"]):
-            raise InputError(self._sentence(trainer, "weights", broken))
+        """Check the weights."""
+        if broken := find_not_finite(checkpoint["state_dict"]):
+            raise InputError(self._explain(trainer, "weights", broken))
 
     def _check(self, trainer: Trainer, pl_module: LightningModule, prefix: str) -> None:
         logged = trainer.callback_metrics
         losses = {name: value for name, value in logged.items() if name.startswith(prefix)}
-        if broken := not_finite(losses):
-            # Broken weights break every loss; then the weights are what there is to tell.
-            weights = not_finite(dict(pl_module.named_parameters()))
+        if broken := find_not_finite(losses):
+            # Broken weights break every loss; then the weights are named.
+            weights = find_not_finite(dict(pl_module.named_parameters()))
             what = "weights" if weights else "losses"
-            raise InputError(self._sentence(trainer, what, weights or broken))
+            raise InputError(self._explain(trainer, what, weights or broken))
 
-    def _sentence(self, trainer: Trainer, what: str, names: list[str]) -> str:
+    def _explain(self, trainer: Trainer, what: str, names: list[str]) -> str:
         if self.last.is_file():
             remedy = (
                 f"Go on from the last good checkpoint with --ckpt_path {self.last} and "
@@ -60,12 +67,12 @@ class FiniteGuard(Callback):
             )
         return (
             f"Training stopped at step {trainer.global_step}, where {what} are not finite: "
-            f"{listed(names, 5)}. {remedy}"
+            f"{list_names(names, 5)}. {remedy}"
         )
 
 
-def not_finite(values: Mapping[str, Tensor]) -> list[str]:
-    """Names of the floating-point tensors with an entry that is infinite or not a number."""
+def find_not_finite(values: Mapping[str, Tensor]) -> list[str]:
+    """Return the names of floating-point tensors with an entry that is infinite or NaN."""
     floating = {name: value for name, value in values.items() if value.is_floating_point()}
     if not floating:
         return []
@@ -74,7 +81,7 @@ def not_finite(values: Mapping[str, Tensor]) -> list[str]:
     return [name for name, good in zip(floating, finite, strict=True) if not good]
 
 
-def listed(names: list[str], most: int) -> str:
-    """The first names, and how many more there are."""
+def list_names(names: list[str], most: int) -> str:
+    """Write the first names, and how many more there are."""
     more = len(names) - most
     return ", ".join(names[:most]) + (f" and {more} more" if more > 0 else "")

@@ -28,7 +28,7 @@ from skinnet.images import (
     to_uint8,
 )
 from train.batch import Batch
-from train.guards import listed
+from train.guards import list_names
 from train.stream import StreamLoader, seen_samples
 from train.synthetic.faces import Drawn, SyntheticFaces
 
@@ -36,7 +36,7 @@ SUFFIXES = (".jpg", ".jpeg", ".png", ".tif", ".tiff", ".webp")
 Share = restricted_number_type("Share", float, [(">=", 0), ("<", 1)])
 
 EXPOSURE_SD, WHITE_BALANCE_SD = 0.4, 0.03
-"""How much photographs vary in training, in logarithms: all of it, and red and blue to green."""
+"""Standard deviations of the augmentation, in logarithms: of all channels, and of R/G and B/G."""
 
 
 class Crop(NamedTuple):
@@ -47,7 +47,7 @@ class Crop(NamedTuple):
 
 
 class Pair(NamedTuple):
-    """A crop seen twice, each time brighter or darker, warmer or colder."""
+    """A crop in two versions of different exposure and white balance."""
 
     photograph: NDArray[np.uint8]
     mask: NDArray[np.uint8]
@@ -55,11 +55,13 @@ class Pair(NamedTuple):
 
 
 class Crops(Dataset[Pair]):
-    """Pairs in an endless stream: every epoch has all crops, shuffled, mirrored, and varied by its
-    own number and the seed.
+    """An endless stream of pairs.
+
+    Every epoch has all crops. Order, mirroring and augmentation depend on the seed and the number
+    of the epoch.
     """
 
-    def __init__(self, crops: list[Crop], seed: int):
+    def __init__(self, crops: list[Crop], seed: int) -> None:
         self.crops = crops
         self.seed = seed
 
@@ -68,19 +70,19 @@ class Crops(Dataset[Pair]):
 
     def __getitem__(self, index: int) -> Pair:
         epoch, place = divmod(index, len(self.crops))
-        lot = np.random.default_rng([self.seed, epoch])
-        order = lot.permutation(len(self.crops))
-        mirrored = lot.random(len(self.crops)) < 0.5
+        rng = np.random.default_rng([self.seed, epoch])
+        order = rng.permutation(len(self.crops))
+        mirrored = rng.random(len(self.crops)) < 0.5
         crop = self.crops[order[place]]
         crop = Crop(*(part[:, ::-1].copy() for part in crop)) if mirrored[place] else crop
-        draw = np.random.default_rng([self.seed, epoch, place])
-        return Pair(*varied(crop, draw), varied(crop, draw).photograph)
+        rng = np.random.default_rng([self.seed, epoch, place])
+        return Pair(*augment(crop, rng), augment(crop, rng).photograph)
 
 
-def varied(crop: Crop, draw: np.random.Generator) -> Crop:
-    """The crop under another exposure, which clips as a camera does, and white balance."""
-    red, blue = draw.normal(0, WHITE_BALANCE_SD, 2)
-    gain = np.exp(draw.normal(0, EXPOSURE_SD) + np.array([red, 0, blue]))
+def augment(crop: Crop, rng: np.random.Generator) -> Crop:
+    """Change exposure and white balance; values above white are clipped, as in a camera."""
+    red, blue = rng.normal(0, WHITE_BALANCE_SD, 2)
+    gain = np.exp(rng.normal(0, EXPOSURE_SD) + np.array([red, 0, blue]))
     levels = srgb_to_linear(np.arange(256, dtype=np.uint8))
     table = to_uint8(linear_to_srgb(levels[:, None] * gain))
     return crop._replace(photograph=table[crop.photograph, np.arange(3)])
@@ -90,9 +92,9 @@ class Portraits(LightningDataModule):
     """Photographs of faces, found, cropped and masked by `skinnet.images.faces`.
 
     Unreadable pictures and pictures without a face are skipped, counted, and listed in
-    `skipped.csv` of the run. Every step also sees a batch of `twin`, so that the maps keep their
-    meaning. In training each photograph is shown twice in different exposure and white balance, so
-    that what is read of it can be held to be the same.
+    `skipped.csv` of the run. Every step also sees a batch of `synthetic` faces, so that the maps
+    keep their meaning. In training each photograph is shown twice in different exposure and white
+    balance, so that a loss can compare what is read of both.
 
     Args:
         folder: of the photographs, searched with its subfolders.
@@ -101,8 +103,8 @@ class Portraits(LightningDataModule):
         val_share: share of the photographs that is kept for validation.
         unreadable_share: share of the pictures that may be unreadable; with more, training does not
             start.
-        seed: of the order, the variation and the choice of validation photographs.
-        twin: heads of the same size with all ground truth, to train on beside the photographs.
+        seed: of the order, the augmentation and the choice of validation photographs.
+        synthetic: synthetic faces of the same size, to train on beside the photographs.
     """
 
     def __init__(
@@ -113,8 +115,8 @@ class Portraits(LightningDataModule):
         val_share: Share = 0.1,  # type: ignore[valid-type]
         unreadable_share: Share = 0.1,  # type: ignore[valid-type]
         seed: NonNegativeInt = 0,
-        twin: SyntheticFaces | None = None,
-    ):
+        synthetic: SyntheticFaces | None = None,
+    ) -> None:
         super().__init__()
         self.folder = Path(folder)
         self.size = size
@@ -122,35 +124,35 @@ class Portraits(LightningDataModule):
         self.val_share = val_share
         self.unreadable_share = unreadable_share
         self.seed = seed
-        self.twin = twin or SyntheticFaces(size=size, batch_size=batch_size)
+        self.synthetic = synthetic or SyntheticFaces(size=size, batch_size=batch_size)
         self.crops: dict[str, list[Crop]] = {}
 
     @property
     def described(self) -> str:
-        """What a model card says of these data."""
-        return f"{len(self.crops['train'])} photographs and {self.twin.described}"
+        """One line on these data for files of the model."""
+        return f"{len(self.crops['train'])} photographs and {self.synthetic.described}"
 
     def prepare_data(self) -> None:
-        """Cast the heads of the twin that are missing, once there are photographs to be used."""
+        """Find the faces, and cast the synthetic heads that are missing."""
         if not self.crops:
             self._find()
-        self.twin.trainer = self.trainer
-        self.twin.prepare_data()
+        self.synthetic.trainer = self.trainer
+        self.synthetic.prepare_data()
 
     def setup(self, stage: str) -> None:
-        """Find the faces, and read the heads of the twin that a stage needs."""
+        """Find the faces, and read the synthetic heads that a stage needs."""
         if not self.crops:
             self._find()
-        self.twin.trainer = self.trainer
-        self.twin.setup(stage)
+        self.synthetic.trainer = self.trainer
+        self.synthetic.setup(stage)
 
     def _find(self) -> None:
-        # Not when it is made: the parser would hide the sentence in its own.
-        if self.twin.size != self.size:
+        # Not in the constructor, whose errors the parser hides in its own.
+        if self.synthetic.size != self.size:
             raise InputError(
-                f"Photographs are cut to {self.size} pixels and the twin's pictures have "
-                f"{self.twin.size}; give --data.init_args.size and --data.init_args.twin.size "
-                "the same number."
+                f"Photographs are cut to {self.size} pixels and synthetic faces have "
+                f"{self.synthetic.size}; give --data.init_args.size and "
+                "--data.init_args.synthetic.size the same number."
             )
         crops, skipped = find_crops(self.folder, self.size, self.unreadable_share)
         if self.trainer is not None and self.trainer.is_global_zero:
@@ -165,38 +167,41 @@ class Portraits(LightningDataModule):
         }
 
     def train_dataloader(self) -> CombinedLoader:
+        """Make the endless loader of photographs and synthetic faces."""
         crops = Crops(self.crops["train"], self.seed)
         steps = max(len(crops) // self.batch_size, 1)
         seen = partial(seen_samples, self.trainer, self.batch_size)
         loaders = {
             "portraits": StreamLoader(crops, self.batch_size, steps * self.batch_size, seen),
-            "twin": self.twin.stream(steps, self.trainer),
+            "synthetic": self.synthetic.stream(steps, self.trainer),
         }
         return CombinedLoader(loaders, "min_size")
 
     def val_dataloader(self) -> CombinedLoader:
-        return self._fixed(self.twin.val_dataloader())
+        """Make the loader of the photographs kept for validation, beside synthetic faces."""
+        return self._combine(self.synthetic.val_dataloader())
 
     def test_dataloader(self) -> CombinedLoader:
-        return self._fixed(self.twin.test_dataloader())
+        """Make the loader of the photographs kept for validation, beside synthetic test faces."""
+        return self._combine(self.synthetic.test_dataloader())
 
-    def _fixed(self, twin: DataLoader[Drawn]) -> CombinedLoader:
-        """The photographs kept for validation, as they are, beside pictures of the twin; whichever
-        are fewer come again.
-        """
+    def _combine(self, synthetic: DataLoader[Drawn]) -> CombinedLoader:
+        """Validation photographs as they are, beside synthetic faces; the shorter set repeats."""
         portraits: DataLoader[Crop] = DataLoader(self.crops["val"], self.batch_size)  # type: ignore[arg-type]
-        return CombinedLoader({"portraits": portraits, "twin": twin}, "max_size_cycle")
+        return CombinedLoader({"portraits": portraits, "synthetic": synthetic}, "max_size_cycle")
 
     def on_after_batch_transfer(self, batch: Any, dataloader_idx: int) -> dict[str, Batch]:
+        """Turn the crops into a batch, and render the synthetic faces."""
         photograph, mask, *again = (part.float() / 255 for part in batch["portraits"])
-        shown = torch.cat([photograph, *again]).movedim(-1, 1)
+        photographs = torch.cat([photograph, *again]).movedim(-1, 1)
         masks = torch.cat([mask] * (1 + len(again)))
-        twin = self.twin.on_after_batch_transfer(batch["twin"], dataloader_idx)
-        return {"portraits": Batch(shown, masks, twice=bool(again)), "twin": twin}
+        synthetic = self.synthetic.on_after_batch_transfer(batch["synthetic"], dataloader_idx)
+        portraits = Batch(photographs, masks, paired=bool(again))
+        return {"portraits": portraits, "synthetic": synthetic}
 
 
 class Skipped(NamedTuple):
-    """A picture that training goes without, and why, in words."""
+    """A picture that training does not use, and the reason in words."""
 
     path: Path
     reason: str
@@ -206,18 +211,27 @@ class Skipped(NamedTuple):
 def find_crops(
     folder: Path, size: int, unreadable_share: float = 0.1
 ) -> tuple[list[Crop], list[Skipped]]:
-    """The faces of all pictures in a folder, in the order of their names, and what was skipped.
+    """Find the faces in the pictures of a folder, in the order of their names.
 
-    Raises `InputError` if there is no folder or no picture in it, if more than `unreadable_share`
-    of the pictures cannot be read, or if none shows a face.
+    Args:
+        folder: Searched with its subfolders.
+        size: Side of the crops in pixels.
+        unreadable_share: Share of the pictures that may be unreadable.
+
+    Returns:
+        The crops, and the pictures that were skipped.
+
+    Raises:
+        InputError: if there is no folder or no picture in it, if more than `unreadable_share` of
+            the pictures cannot be read, or if none shows a face.
     """
     pictures = find_pictures(folder)
-    found = [_crop(path, size) for path in pictures]
+    found = [_crop_face(path, size) for path in pictures]
     crops = [each for each in found if isinstance(each, Crop)]
     skipped = [each for each in found if isinstance(each, Skipped)]
     unreadable = [str(each.path) for each in skipped if not each.readable]
     if len(unreadable) > unreadable_share * len(pictures):
-        raise InputError(_too_many(folder, unreadable, len(pictures), unreadable_share))
+        raise InputError(_describe_unreadable(folder, unreadable, len(pictures), unreadable_share))
     if not crops:
         raise InputError(
             f"{folder} holds no photograph with a face in it ({len(pictures)} pictures looked at)."
@@ -227,7 +241,11 @@ def find_crops(
 
 
 def find_pictures(folder: Path) -> list[Path]:
-    """Pictures in a folder and its subfolders, by name; `InputError` if there is none."""
+    """List the pictures in a folder and its subfolders by name.
+
+    Raises:
+        InputError: if there is no folder or no picture in it.
+    """
     if not folder.is_dir():
         raise InputError(f"{folder} is not a folder; give the folder of your photographs.")
     pictures = sorted(path for path in folder.rglob("*") if path.suffix.lower() in SUFFIXES)
@@ -239,7 +257,7 @@ def find_pictures(folder: Path) -> list[Path]:
 
 
 def write_skipped(skipped: list[Skipped], path: Path) -> None:
-    """Write a table of the pictures that were skipped; none are a table without rows."""
+    """Write a table of the pictures that were skipped; without any, only its head."""
     text = io.StringIO()
     rows = csv.writer(text, lineterminator="\n")
     rows.writerow(("picture", "reason"))
@@ -248,24 +266,24 @@ def write_skipped(skipped: list[Skipped], path: Path) -> None:
     write_text(path, text.getvalue())
 
 
-def _too_many(folder: Path, unreadable: list[str], pictures: int, allowed: float) -> str:
+def _describe_unreadable(folder: Path, unreadable: list[str], pictures: int, allowed: float) -> str:
     return (
         f"{len(unreadable)} of {pictures} pictures in {folder} cannot be read "
-        f"({len(unreadable) / pictures:.0%}, and {allowed:.0%} may): {listed(unreadable, 5)}. "
+        f"({len(unreadable) / pictures:.0%}, and {allowed:.0%} may): {list_names(unreadable, 5)}. "
         "Repair or remove them, or allow more with --data.init_args.unreadable_share."
     )
 
 
 @rank_zero_only
 def _report(folder: Path, faces: int, unreadable: list[str], faceless: int) -> None:
-    said = f"{folder}: {faces} faces, {len(unreadable) + faceless} pictures skipped"
+    summary = f"{folder}: {faces} faces, {len(unreadable) + faceless} pictures skipped"
     parts = [f"{faceless} without a face"] if faceless else []
     if unreadable:
-        parts.append(f"{len(unreadable)} unreadable: {listed(unreadable, 10)}")
-    print(f"{said} ({'; '.join(parts)})" if parts else said, file=sys.stderr)
+        parts.append(f"{len(unreadable)} unreadable: {list_names(unreadable, 10)}")
+    print(f"{summary} ({'; '.join(parts)})" if parts else summary, file=sys.stderr)
 
 
-def _crop(path: Path, size: int) -> Crop | Skipped:
+def _crop_face(path: Path, size: int) -> Crop | Skipped:
     try:
         photo = read_photo(path)
     except InputError as error:

@@ -40,7 +40,7 @@ def data_of(path: Path, photographs: Path, faces: Path, casts: Path) -> tuple[st
         return (*FEW, *heads)
     nested = ("size=16", "batch_size=2", "val_samples=2", *heads)
     own = (f"folder={photographs}", "unreadable_share=0.2")
-    return (*own, *(f"twin.{each}" for each in nested))
+    return (*own, *(f"synthetic.{each}" for each in nested))
 
 
 EXPERIMENTS = [

@@ -10,7 +10,7 @@ from torch import Tensor
 
 from skinnet.network import SkinAutoencoder, read_checkpoint
 from train.callbacks import LastCheckpoint
-from train.guards import listed, not_finite
+from train.guards import find_not_finite, list_names
 from train.task import SkinTask, compute_losses
 
 Fit = Callable[..., int]
@@ -46,7 +46,7 @@ def test_a_loss_that_is_no_number_stops_training_at_the_last_good_step(
     assert f"--ckpt_path {run / 'last.ckpt'}" in said
     assert read_checkpoint(run / "last.ckpt")["global_step"] == 5
     model = SkinAutoencoder.from_pretrained(run / "last.ckpt")
-    assert not not_finite(model.state_dict())
+    assert not find_not_finite(model.state_dict())
     assert fit(run, f"--ckpt_path={run / 'last.ckpt'}", "--trainer.max_epochs=2") == 0
 
 
@@ -100,11 +100,11 @@ def test_broken_weights_are_named_rather_than_all_the_losses_that_they_break(
 
 
 def test_names_are_listed_up_to_a_number() -> None:
-    assert listed(["a", "b"], 2) == "a, b"
-    assert listed(["a", "b", "c"], 2) == "a, b and 1 more"
+    assert list_names(["a", "b"], 2) == "a, b"
+    assert list_names(["a", "b", "c"], 2) == "a, b and 1 more"
     values = {
         "whole": torch.ones(2, dtype=torch.long),
         "good": torch.ones(2),
         "bad": torch.ones(2) / 0,
     }
-    assert not_finite(values) == ["bad"] and not_finite({}) == []
+    assert find_not_finite(values) == ["bad"] and find_not_finite({}) == []

@@ -14,7 +14,7 @@ from torch.utils.data import DataLoader
 
 from skinnet.errors import InputError
 from skinnet.images import srgb_to_linear
-from skinnet.network.checkpoint import read_checkpoint
+from skinnet.network import read_checkpoint
 from train.callbacks import LastCheckpoint, PictureGrid
 from train.cli import main
 from train.portraits import (
@@ -23,8 +23,8 @@ from train.portraits import (
     Crop,
     Crops,
     Portraits,
+    augment,
     find_crops,
-    varied,
 )
 from train.synthetic.faces import Drawn, SyntheticFaces
 
@@ -78,11 +78,11 @@ def fit(photographs: Path, casts: Path, run: Path, *arguments: str) -> int:
     """Two epochs of three steps of two of seven photographs."""
     data = (f"folder={photographs}", "size=16", "batch_size=2", "unreadable_share=0.2")
     heads = ("heads=1", "val_heads=1", f"geometry={casts}")
-    twin = ("size=16", "batch_size=2", "val_samples=2", *heads)
+    synthetic = ("size=16", "batch_size=2", "val_samples=2", *heads)
     return main([
         *("fit", "--config=configs/portraits.yaml", f"--run={run}", "--model.weights=null"),
         *("--model.widths=[4,8]", *(f"--data.init_args.{each}" for each in data)),
-        *(f"--data.init_args.twin.{each}" for each in twin),
+        *(f"--data.init_args.synthetic.{each}" for each in synthetic),
         *("--trainer.precision=32-true", "--trainer.accelerator=cpu", "--trainer.max_epochs=2"),
         *("--trainer.enable_progress_bar=false", "--trainer.log_every_n_steps=1", *arguments),
     ])  # fmt: skip
@@ -137,7 +137,7 @@ def test_every_epoch_shows_every_photograph_once_in_its_own_order(
 ) -> None:
     grey = [Crop(np.full((2, 2, 3), n, np.uint8), np.zeros((2, 2), np.uint8)) for n in range(20)]
     crops = Crops(grey, seed=1)
-    monkeypatch.setattr("train.portraits.varied", lambda crop, draw: crop)
+    monkeypatch.setattr("train.portraits.augment", lambda crop, rng: crop)
     epochs = [[int(crops[20 * e + i].photograph[0, 0, 0]) for i in range(20)] for e in range(2)]
     assert sorted(epochs[0]) == sorted(epochs[1]) == list(range(20))
     assert epochs[0] != epochs[1]
@@ -158,32 +158,32 @@ def test_photographs_vary_by_seed_epoch_and_index_alone() -> None:
 
 def test_a_brighter_photograph_clips_and_keeps_its_mask() -> None:
     bright = Crop(np.full((2, 2, 3), 250, np.uint8), np.full((2, 2), 7, np.uint8))
-    made = [varied(bright, np.random.default_rng(n)) for n in range(20)]
+    made = [augment(bright, np.random.default_rng(n)) for n in range(20)]
     assert max(each.photograph.max() for each in made) == 255
     assert all((each.mask == 7).all() for each in made)
 
 
 def test_sizes_that_differ_are_refused(tmp_path: Path) -> None:
-    with pytest.raises(InputError, match="cut to 192 pixels and the twin's pictures have 160"):
-        Portraits(str(tmp_path), size=192, twin=SyntheticFaces(size=160)).setup("fit")
+    with pytest.raises(InputError, match="cut to 192 pixels and synthetic faces have 160"):
+        Portraits(str(tmp_path), size=192, synthetic=SyntheticFaces(size=160)).setup("fit")
 
 
 @pytest.mark.filterwarnings("ignore:.isinstance.treespec")
-def test_validation_sees_all_its_photographs_however_few_the_twin_s(tmp_path: Path) -> None:
+def test_validation_sees_all_its_photographs_however_few_synthetic_faces(tmp_path: Path) -> None:
     data = Portraits(str(tmp_path), size=16, batch_size=2)
     data.crops = {"val": [Crop(np.zeros((16, 16, 3), np.uint8), np.zeros((16, 16), np.uint8))] * 9}
-    twin: DataLoader[Drawn] = DataLoader([{"f_mel": np.zeros(1)}] * 2, 2)  # type: ignore[arg-type]
-    sizes = [len(batch["portraits"].photograph) for batch, *_ in data._fixed(twin)]
+    synthetic: DataLoader[Drawn] = DataLoader([{"f_mel": np.zeros(1)}] * 2, 2)  # type: ignore[arg-type]
+    sizes = [len(batch["portraits"].photograph) for batch, *_ in data._combine(synthetic)]
     assert sum(sizes) == 9
 
 
 @pytest.mark.filterwarnings("ignore:.isinstance.treespec")
 def test_photographs_kept_for_validation_are_left_as_they_are(tmp_path: Path) -> None:
     data = Portraits(str(tmp_path), size=16, batch_size=2)
-    draw = np.random.default_rng(0)
-    pictures = draw.integers(0, 255, (4, 16, 16, 3), np.uint8)
+    rng = np.random.default_rng(0)
+    pictures = rng.integers(0, 255, (4, 16, 16, 3), np.uint8)
     data.crops = {"val": [Crop(each, each[..., 0]) for each in pictures]}
-    data.twin.buffers = {"val": {"label": np.zeros((1, 16, 16), np.uint8)}}
+    data.synthetic.buffers = {"val": {"label": np.zeros((1, 16, 16), np.uint8)}}
     loader = data.val_dataloader().iterables["portraits"]
     shown = np.concatenate([batch.photograph for batch in loader])
     np.testing.assert_array_equal(shown, pictures)
