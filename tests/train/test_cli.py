@@ -11,6 +11,7 @@ import yaml
 from lightning import Trainer
 
 from skinnet.network import AutoencoderConfig, SkinAutoencoder
+from skinnet.network.encoder import _EARLIER_NAMES
 from train.callbacks import LastCheckpoint, PictureGrid
 from train.cli import main
 
@@ -71,9 +72,10 @@ def test_a_killed_run_goes_on_from_its_last_checkpoint(
             raise Killed
 
     monkeypatch.setattr("train.cli.LastCheckpoint", partial(LastCheckpoint, seconds=0.0))
-    with monkeypatch.context() as context, pytest.raises(Killed):
+    with monkeypatch.context() as context:
         context.setattr(PictureGrid, "on_train_batch_end", lambda _, *hook: kill(*hook))
-        fit(parts, "--trainer.max_epochs=2")
+        with pytest.raises(Killed):
+            fit(parts, "--trainer.max_epochs=2")
     assert fit(parts, f"--ckpt_path={parts / 'last.ckpt'}", "--trainer.max_epochs=2") == 0
     one, other = weights(whole / "last.ckpt"), weights(parts / "last.ckpt")
     assert all(torch.equal(one[name], other[name]) for name in one)
@@ -203,3 +205,73 @@ def test_weights_to_start_from_are_their_own_argument(
     SkinAutoencoder(AutoencoderConfig(widths=(4, 6))).save_pretrained(other)
     assert fit(tmp_path / "run2", f"--model.weights={other}") == 2
     assert "another shape" in capsys.readouterr().err
+
+
+@pytest.mark.parametrize(
+    ("old", "new"),
+    [
+        ("leak", "error_shading_covariance"),
+        ("steadiness", "augmentation_consistency"),
+        ("overlap", "soft_iou"),
+        ("stray", "off_skin_shading"),
+        ("elsewhere", "background_reconstruction"),
+        ("pigments", "pigment_l1"),
+        ("fractions", "pigment_mse"),
+    ],
+)
+@pytest.mark.parametrize("by", ["flag", "yaml"])
+def test_an_old_loss_is_answered_with_its_new_name(
+    fit: Fit, tmp_path: Path, old: str, new: str, by: str, capsys: pytest.CaptureFixture[str]
+) -> None:
+    path = tmp_path / "old.yaml"
+    path.write_text(yaml.safe_dump({"model": {"losses": {old: 1.0}}}))
+    arguments = [f"--model.losses.{old}=1"] if by == "flag" else [f"--config={path}"]
+    assert fit(tmp_path / "run", *arguments) == 2
+    sentence = f"'model.losses.{old}' is now called 'model.losses.{new}'; use the new name."
+    assert capsys.readouterr().err == f"train: {sentence}\n"
+
+
+def test_the_old_key_of_synthetic_faces_is_answered_with_the_new_one(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    text = Path("configs/portraits.yaml").read_text()
+    (tmp_path / "old.yaml").write_text(text.replace("    synthetic:", "    twin:"))
+    for arguments in (
+        [f"--config={tmp_path / 'old.yaml'}"],
+        ["--config=configs/portraits.yaml", "--data.init_args.twin.heads=3"],
+    ):
+        assert main(["fit", *arguments]) == 2
+        said = capsys.readouterr().err
+        assert said == "train: 'twin' is now called 'synthetic'; use the new name.\n"
+
+
+def test_the_old_class_of_synthetic_faces_is_answered_with_the_new_one(
+    fit: Fit, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    text = Path("configs/quick.yaml").read_text()
+    (tmp_path / "old.yaml").write_text(text.replace("SyntheticFaces", "TwinFaces"))
+    for arguments in (
+        [f"--config={tmp_path / 'old.yaml'}"],
+        ["--config=configs/quick.yaml", "--data=TwinFaces"],
+    ):
+        assert main(["fit", *arguments]) == 2
+        said = capsys.readouterr().err
+        assert said == "train: 'TwinFaces' is now called 'SyntheticFaces'; use the new name.\n"
+
+
+def test_a_checkpoint_of_version_0_1_is_resumed(fit: Fit, tmp_path: Path) -> None:
+    run = tmp_path / "run"
+    assert fit(run, "--trainer.max_epochs=1") == 0
+    checkpoint = torch.load(run / "last.ckpt", weights_only=True)
+    for name in list(checkpoint["state_dict"]):
+        for earlier, today in _EARLIER_NAMES.items():
+            prefix = f"model.encoder.{today}"
+            if name.startswith(prefix):
+                old_name = f"model.encoder.{earlier}{name.removeprefix(prefix)}"
+                checkpoint["state_dict"][old_name] = checkpoint["state_dict"].pop(name)
+    assert any(".gather." in name for name in checkpoint["state_dict"])
+    checkpoint["hyper_parameters"] = {"losses": {"leak": 3.0}, "_class_path": "train.TwinFaces"}
+    torch.save(checkpoint, tmp_path / "old.ckpt")
+    resumed = (f"--ckpt_path={tmp_path / 'old.ckpt'}", "--trainer.max_epochs=2")
+    assert fit(run, *resumed) == 0
+    assert max(losses(run)) == 7
