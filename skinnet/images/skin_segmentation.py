@@ -103,7 +103,9 @@ def _fit_normal(samples: NDArray[Any]) -> tuple[NDArray[Any], NDArray[Any]]:
     return kept.mean(0), np.cov(kept.T, ddof=0) + _MIN_COVARIANCE
 
 
-def _mahalanobis(linear: NDArray[Any], mean: NDArray[Any], covariance: NDArray[Any]) -> NDArray[Any]:
+def _mahalanobis(
+    linear: NDArray[Any], mean: NDArray[Any], covariance: NDArray[Any]
+) -> NDArray[Any]:
     """Mahalanobis distance to the skin; bright pixels may have a specular part."""
     inverse = np.linalg.inv(covariance)
     best = np.full(linear.shape[:2], np.inf)

@@ -1,6 +1,7 @@
-"""Photographs to pigment maps and back with onnxruntime; torch is not needed."""
+"""Photographs to pigment maps and back with onnxruntime."""
 
 import math
+from collections.abc import Mapping
 from functools import cached_property
 from pathlib import Path
 from typing import Any
@@ -14,11 +15,11 @@ from skinnet.images.box import Box
 from skinnet.images.faces import find_face, frame_head
 from skinnet.images.photograph import as_photo
 from skinnet.images.resizing import resize
-from skinnet.images.srgb import srgb_to_linear, to_uint8
-from skinnet.inference._editing import apply_gain, colour_gain, edge_fade
+from skinnet.images.srgb import srgb_to_linear
+from skinnet.inference._editing import apply_gain, compute_gain, fade_edges
 from skinnet.inference.decomposition import Decomposition
-from skinnet.inference.full_resolution._colour_table import tabulate
-from skinnet.inference.full_resolution._layers import Layers, sharpen
+from skinnet.inference.full_resolution._colour_table import tabulate_colours
+from skinnet.inference.full_resolution._layers import Layers, enlarge_layers, sharpen_layers
 from skinnet.inference.onnx_model import (
     CAPTURE_NAMES,
     MAP_NAMES,
@@ -28,23 +29,32 @@ from skinnet.inference.onnx_model import (
     open_model,
 )
 
-__all__ = ["Decomposer", "Decomposition"]
-
 MAX_FACTOR = 10.0
 """Largest factor of a pigment in an edit."""
 
-_LEAST_SIDE = 16
-_DECODED = (*MAP_NAMES, *CAPTURE_NAMES)
+_MIN_SIDE = 16
+"""Least pixels along a side of what the encoder gets."""
 
 ImageLike = str | Path | Image.Image | NDArray[Any]
+_Arrays = Mapping[str, NDArray[np.float32]]
 
 
 class Decomposer:
-    """Takes photographs of faces apart into melanin, hemoglobin, light and shape.
+    """Decomposes photographs of faces into melanin, hemoglobin, shading, light and camera.
 
-    `Decomposer()(image)` gives a `Decomposition`. `model` is an encoder file, X.onnx, with its
-    decoder X.decoder.onnx beside it; None is the shipped one. `threads` (None: all cores) bounds
-    the processor's cores in use. The files are opened once, at the first photograph.
+    The model files are opened once, at the first photograph.
+
+    Args:
+        model: an encoder, X.onnx, with its decoder X.decoder.onnx in the same folder; None for the
+            one that comes with the package.
+        threads: number of threads; None for all cores.
+
+    Example:
+        >>> from skimage.data import astronaut
+        >>> decomposition = Decomposer()(astronaut())
+        >>> skin = decomposition.mask > 0.5
+        >>> print(f"{decomposition.melanin[skin].mean():.2f}")
+        0.03
     """
 
     def __init__(self, model: str | Path | None = None, threads: int | None = None):
@@ -64,7 +74,11 @@ class Decomposer:
         return open_model(get_decoder_path(self.path), "decoder", self.threads)
 
     def load(self) -> None:
-        """Open both files now. Raises `InputError` if one cannot be used."""
+        """Open both model files now.
+
+        Raises:
+            InputError: one of them cannot be used.
+        """
         _ = self.encoder, self.decoder
 
     def __call__(
@@ -74,29 +88,33 @@ class Decomposer:
         name: str | None = None,
         detail: bool = True,
     ) -> Decomposition:
-        """Decompose a path, a Pillow image or an array, as `skinnet.images.as_photo` takes it.
+        """Decompose a photograph.
 
-        Looks at the square around the largest face, or at everything if `whole_image`; `name`
-        stands for the image in errors. With `detail`, maps of skin have that of the photograph
-        (`skinnet.inference.full_resolution`); without it they are the network's, enlarged. Raises
-        `InputError` for an image or a model file that cannot be used, `NoFaceError` without a face.
+        Args:
+            image: a path, a Pillow image or an array, as `skinnet.images.as_photo` takes it.
+            whole_image: whether to decompose the whole image, and not the square around the head of
+                the largest face.
+            name: how errors call the image; the path by default.
+            detail: whether to add the photograph's detail to the maps; without it they are the
+                network's maps, enlarged, which is faster.
+
+        Returns:
+            Maps of the photograph's size, light and camera.
+
+        Raises:
+            InputError: the image or a model file cannot be used.
+            NoFaceError: no face was found.
         """
         photo = as_photo(image)
-        box = _look_at(photo, whole_image, name or _name(image))
-        codes = self._encode(photo, box)
-        decoded = self._decode(codes)
-        reconstruction = photo.copy()
-        reconstruction[box.slices] = resize(to_uint8(decoded), box.width, box.height)
-        maps = {name: _place(codes[name][0], photo, box) for name in (*MAP_NAMES, "mask")}
-        if detail and max(box.width, box.height) > self.encoder.working_size:
-            self._sharpen(photo, box, codes, maps | {"reconstruction": reconstruction})
+        box = _choose_box(photo, whole_image, name or _name_image(image))
+        encoder_outputs = self._encode(photo[box.slices])
+        layers = self._make_layers(photo[box.slices], encoder_outputs, detail)
         return Decomposition(
-            **maps,
-            light=self._light(codes),
-            camera=_camera(codes),
-            reconstruction=reconstruction,
+            **_paste_layers(layers, photo, box),
+            light=self._name_light(encoder_outputs),
+            camera=_name_camera(encoder_outputs),
             box=box,
-            outputs=self.encoder.outputs,
+            output_info=self.encoder.output_info,
             model={"version": self.encoder.version, "trained_on": self.encoder.trained_on},
         )
 
@@ -108,10 +126,31 @@ class Decomposer:
         whole_image: bool = False,
         name: str | None = None,
     ) -> NDArray[np.uint8]:
-        """The photograph, uint8 sRGB [H, W, 3], with its pigments multiplied by these factors.
+        """Multiply the pigments of a photograph.
 
-        Works at full size: texture and gloss stay, and pixels that are not skin keep their values.
-        Raises `InputError` for factors outside [0, 10], and as `__call__` does.
+        The edit works at full resolution: texture and specular reflection stay, and pixels that are
+        not skin keep their exact values.
+
+        Args:
+            image: a path, a Pillow image or an array, as `skinnet.images.as_photo` takes it.
+            melanin: factor of melanin in [0, 10].
+            hemoglobin: factor of hemoglobin in [0, 10].
+            whole_image: whether to edit the whole image, and not the square around the head of the
+                largest face.
+            name: how errors call the image; the path by default.
+
+        Returns:
+            The edited photograph, uint8 sRGB [H, W, 3].
+
+        Raises:
+            InputError: a factor, the image or a model file cannot be used.
+            NoFaceError: no face was found.
+
+        Example:
+            >>> from skimage.data import astronaut
+            >>> edited = Decomposer().edit(astronaut(), melanin=2.0)
+            >>> bool(edited[125, 224].mean() < astronaut()[125, 224].mean())  # the nose
+            True
         """
         for pigment, factor in (("melanin", melanin), ("hemoglobin", hemoglobin)):
             if not (math.isfinite(factor) and 0 <= factor <= MAX_FACTOR):
@@ -120,93 +159,97 @@ class Decomposer:
                     "1 leaves it as it is, 2 doubles it."
                 )
         photo = as_photo(image)
-        box = _look_at(photo, whole_image, name or _name(image))
-        codes = self._encode(photo, box)
-        gain = self._gain(codes, melanin, hemoglobin)
+        box = _choose_box(photo, whole_image, name or _name_image(image))
+        crop = photo[box.slices]
+        encoder_outputs = self._encode(crop)
+        gain = self._compute_gain(encoder_outputs, melanin, hemoglobin)
+        mask = encoder_outputs["mask"][0] * fade_edges(gain.shape[:2], box, photo.shape[:2])
         edited = photo.copy()
-        mask = codes["mask"][0] * edge_fade(gain.shape[:2], box, photo.shape[:2])
-        edited[box.slices] = apply_gain(photo[box.slices], gain, codes["specular"][0], mask)
+        edited[box.slices] = apply_gain(crop, gain, encoder_outputs["specular"][0], mask)
         return edited
 
-    def _encode(self, photo: NDArray[np.uint8], box: Box) -> dict[str, NDArray[np.float32]]:
-        scale = self.encoder.working_size / max(box.width, box.height)
-        width, height = (max(_LEAST_SIDE, round(n * scale)) for n in (box.width, box.height))
-        return self.encoder.run({"image": resize(photo[box.slices], width, height)[None]})
+    def _encode(self, crop: NDArray[np.uint8]) -> dict[str, NDArray[np.float32]]:
+        """Maps [1, h, w] and capture [1, ...] of a crop at the encoder's working size."""
+        scale = self.encoder.working_size / max(crop.shape[:2])
+        height, width = (max(_MIN_SIDE, round(side * scale)) for side in crop.shape[:2])
+        return self.encoder.run({"image": resize(crop, width, height)[None]})
 
-    def _decode(self, codes: dict[str, NDArray[np.float32]]) -> NDArray[np.float32]:
-        images = self.decoder.run({name: codes[name] for name in _DECODED})["image"]
-        clipped: NDArray[np.float32] = np.clip(images[0], 0, 1)
+    def _decode(self, encoder_outputs: _Arrays) -> NDArray[np.float32]:
+        """The decoder's picture, sRGB [h, w, 3] in [0, 1]."""
+        inputs = {name: encoder_outputs[name] for name in (*MAP_NAMES, *CAPTURE_NAMES)}
+        clipped: NDArray[np.float32] = np.clip(self.decoder.run(inputs)["image"][0], 0, 1)
         return clipped
 
-    def _sharpen(
-        self,
-        photo: NDArray[np.uint8],
-        box: Box,
-        codes: dict[str, NDArray[np.float32]],
-        full: dict[str, NDArray[Any]],
-    ) -> None:
-        tops = {name: self.encoder.outputs[name].range[1] for name in MAP_NAMES}
-        table = tabulate(self.decoder, codes, (tops["melanin"], tops["hemoglobin"]))
-        layers = Layers(**{name: values[box.slices] for name, values in full.items()})
-        maps = {name: codes[name][0] for name in (*MAP_NAMES, "mask")}
-        sharpen(layers, photo[box.slices], maps, table, tops["shading"], self.threads)
+    def _make_layers(
+        self, crop: NDArray[np.uint8], encoder_outputs: _Arrays, detail: bool
+    ) -> Layers:
+        decoded = self._decode(encoder_outputs)
+        maps = {name: encoder_outputs[name][0] for name in (*MAP_NAMES, "mask")}
+        height, width = crop.shape[:2]
+        if not detail or max(height, width) <= self.encoder.working_size:
+            return enlarge_layers(maps, decoded, width, height)
+        tops = {name: self.encoder.output_info[name].range[1] for name in MAP_NAMES}
+        pigment_tops = tops["melanin"], tops["hemoglobin"]
+        table = tabulate_colours(self.decoder, encoder_outputs, pigment_tops)
+        return sharpen_layers(crop, maps, decoded, table, tops["shading"], self.threads)
 
-    def _gain(
-        self, codes: dict[str, NDArray[np.float32]], melanin: float, hemoglobin: float
+    def _compute_gain(
+        self, encoder_outputs: _Arrays, melanin: float, hemoglobin: float
     ) -> NDArray[np.float32]:
-        bare = codes | {
-            "shading": np.ones_like(codes["shading"]),
-            "specular": np.zeros_like(codes["specular"]),
-            "offset": np.zeros_like(codes["offset"]),
+        bare = dict(encoder_outputs) | {
+            "shading": np.ones_like(encoder_outputs["shading"]),
+            "specular": np.zeros_like(encoder_outputs["specular"]),
+            "offset": np.zeros_like(encoder_outputs["offset"]),
         }
         factors = {"melanin": np.float32(melanin), "hemoglobin": np.float32(hemoglobin)}
-        scaled = {name: np.clip(codes[name] * factors[name], 0, 1) for name in factors}
+        scaled = {name: np.clip(bare[name] * factor, 0, 1) for name, factor in factors.items()}
         before, after = (srgb_to_linear(self._decode(maps)) for maps in (bare, bare | scaled))
-        return colour_gain(before, after, codes["mask"][0])
+        return compute_gain(before, after, encoder_outputs["mask"][0])
 
-    def _light(self, codes: dict[str, NDArray[np.float32]]) -> dict[str, float]:
-        weights = codes["light"][0].tolist()
+    def _name_light(self, encoder_outputs: _Arrays) -> dict[str, float]:
+        weights = encoder_outputs["light"][0].tolist()
         if len(weights) != len(self.encoder.lights):
             raise InputError(
-                f"{self.path} names {len(self.encoder.lights)} lights and weighs {len(weights)}; "
-                "export it again."
+                f"{self.path} names {len(self.encoder.lights)} lights, but gives {len(weights)} "
+                "weights; export it again."
             )
         named = dict(zip(self.encoder.lights, weights, strict=True))
-        return named | {"temperature_k": float(codes["temperature"][0])}
+        return named | {"temperature_k": float(encoder_outputs["temperature"][0])}
 
 
-def _look_at(photo: NDArray[np.uint8], whole_image: bool, name: str) -> Box:
+def _choose_box(photo: NDArray[np.uint8], whole_image: bool, name: str) -> Box:
     height, width = photo.shape[:2]
     if whole_image:
         return Box(0, 0, width, height)
     face = find_face(photo)
     if face is None:
         raise NoFaceError(
-            f"No face was found in {name}; a frontal, upright one is looked for. --whole-image "
-            "(in Python whole_image=True) goes on without one."
+            f"No face was found in {name}; faces must be frontal and upright. --whole-image "
+            "(in Python whole_image=True) decomposes it without a face."
         )
     return frame_head(face, width, height)
 
 
-def _name(image: ImageLike) -> str:
+def _name_image(image: ImageLike) -> str:
     return str(image) if isinstance(image, str | Path) else "the image"
 
 
-def _camera(codes: dict[str, NDArray[np.float32]]) -> dict[str, Any]:
-    r_over_g, b_over_g = np.exp(codes["white_balance"][0].astype(np.float64)).tolist()
+def _name_camera(encoder_outputs: _Arrays) -> dict[str, Any]:
+    balance = encoder_outputs["white_balance"][0].astype(np.float64)
+    r_over_g, b_over_g = np.exp(balance).tolist()
     return {
-        "components": codes["camera"][0].tolist(),
+        "components": encoder_outputs["camera"][0].tolist(),
         "white_balance": {"r_over_g": r_over_g, "b_over_g": b_over_g},
     }
 
 
-def _place(small: NDArray[np.float32], photo: NDArray[np.uint8], box: Box) -> NDArray[np.float32]:
-    """A map [h, w] or [h, w, 3] of the box in an array of the photograph's size, 0 outside."""
-    full = np.zeros((*photo.shape[:2], *small.shape[2:]), np.float32)
-    inside = full[box.slices]
-    if small.ndim == 2:
-        inside[...] = resize(small, box.width, box.height)
-    else:
-        for channel in range(small.shape[2]):
-            inside[..., channel] = resize(small[..., channel], box.width, box.height)
-    return full
+def _paste_layers(layers: Layers, photo: NDArray[np.uint8], box: Box) -> dict[str, NDArray[Any]]:
+    """Layers of the photograph's size: 0 outside the box, the reconstruction the photograph."""
+    if (box.height, box.width) == photo.shape[:2]:
+        return layers._asdict()
+    pasted: dict[str, NDArray[Any]] = {}
+    for name, layer in layers._asdict().items():
+        shape = (*photo.shape[:2], *layer.shape[2:])
+        pasted[name] = photo.copy() if name == "reconstruction" else np.zeros(shape, layer.dtype)
+        pasted[name][box.slices] = layer
+    return pasted

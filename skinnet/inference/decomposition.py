@@ -1,4 +1,4 @@
-"""What is read from one photograph: maps, light, camera, and their summary."""
+"""The result for one photograph: maps, light, camera, and their summary."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass
@@ -11,27 +11,39 @@ from skinnet._version import __version__
 from skinnet.images.box import Box
 from skinnet.inference.onnx_model import OutputInfo
 
-SKIN = 0.5
-"""Least mask of what is counted as skin."""
+SKIN_THRESHOLD = 0.5
+"""Pixels with a larger mask are counted as skin."""
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(frozen=True, eq=False, repr=False)
 class Decomposition:
-    """A photograph of skin, taken apart. Maps are float32 [H, W] of the photograph's size.
+    """Maps of the skin in one photograph, its light and its camera.
 
     image = shading * skin(melanin, hemoglobin) + specular + offset in linear RGB, under `light` and
-    seen by `camera`; with detail this holds for every pixel of skin. `reconstruction` is made with
-    the network's own offset, the photograph by the share that the mask leaves: what else skin does
-    not explain is not in it.
-    Outside `box` nothing was looked at: maps are 0 there, and `reconstruction` is the photograph
-    itself.
+    with `camera`. With detail this holds for every pixel of skin. Outside `box` maps are 0.
 
-    `melanin`, `hemoglobin`: volume fractions of melanosomes in the epidermis and of blood in the
-    dermis, in [0, 1]; `shading` and `specular` relative to the light; `mask`: how surely a pixel is
-    skin, in [0, 1]; `offset` [H, W, 3]: linear sRGB that skin does not explain; `light`: weight of
-    each light by name, of unit sum, and `temperature_k`, that of its daylight; `camera`:
-    `components` in standard deviations and `white_balance`, the errors `r_over_g` and `b_over_g` as
-    ratios; `reconstruction`: uint8 sRGB [H, W, 3].
+    Attributes:
+        melanin: volume fraction of melanosomes in the epidermis, float32 [H, W] in [0, 1].
+        hemoglobin: volume fraction of blood in the dermis, float32 [H, W] in [0, 1].
+        shading: diffuse shading relative to the light, float32 [H, W].
+        specular: specular reflection relative to the light, float32 [H, W].
+        mask: probability of skin, float32 [H, W] in [0, 1].
+        offset: what the skin model does not explain, linear sRGB, float32 [H, W, 3].
+        light: weight of each light by name, with sum 1, and `temperature_k`, the colour temperature
+            of the daylight in kelvin.
+        camera: `components`, the camera's principal components in standard deviations, and
+            `white_balance`, its errors as the ratios `r_over_g` and `b_over_g`.
+        reconstruction: uint8 sRGB [H, W, 3]; the model's picture of skin with the network's offset,
+            blended with the decoder's picture off skin; the photograph itself outside `box`.
+        box: the part of the photograph that was decomposed.
+        output_info: unit, range and description of each map.
+        model: `version` and `trained_on` of the encoder.
+
+    Example:
+        >>> from skimage.data import astronaut
+        >>> from skinnet import Decomposer
+        >>> Decomposer(threads=1)(astronaut(), detail=False)
+        <Decomposition 512 x 512: melanin 0.0306, hemoglobin 0.0376 on skin, 27% of the box>
     """
 
     melanin: NDArray[np.float32]
@@ -44,56 +56,71 @@ class Decomposition:
     camera: dict[str, Any]
     reconstruction: NDArray[np.uint8]
     box: Box
-    outputs: Mapping[str, OutputInfo]
+    output_info: Mapping[str, OutputInfo]
     model: dict[str, str]
 
+    def __repr__(self) -> str:
+        height, width = self.mask.shape
+        skin = self.mask > SKIN_THRESHOLD
+        share = np.mean(skin[self.box.slices])
+        if not skin.any():
+            return f"<Decomposition {width} x {height}: no skin>"
+        return (
+            f"<Decomposition {width} x {height}: melanin {self.melanin[skin].mean():.3g}, "
+            f"hemoglobin {self.hemoglobin[skin].mean():.3g} on skin, {share:.0%} of the box>"
+        )
+
     def maps(self) -> dict[str, NDArray[np.float32]]:
-        """Every map [H, W] by name, the offset's three channels apart."""
+        """All maps [H, W] by name; the channels of the offset are `offset_r` to `offset_b`."""
         names = ("melanin", "hemoglobin", "shading", "specular", "mask")
         channels = {f"offset_{name}": self.offset[..., i] for i, name in enumerate("rgb")}
         return {name: getattr(self, name) for name in names} | channels
 
-    def output(self, name: str) -> OutputInfo:
+    def describe_map(self, name: str) -> OutputInfo:
         """Unit, range and description of a map of `maps()`."""
-        return self.outputs[name.removesuffix("_r").removesuffix("_g").removesuffix("_b")]
+        return self.output_info[name.removesuffix("_r").removesuffix("_g").removesuffix("_b")]
 
     def summary(self) -> dict[str, Any]:
-        """Numbers that JSON can hold: statistics of each map over skin, light and camera.
+        """Summarise the maps over skin, with light and camera, as numbers for JSON.
 
-        `skin_share` is the part of the box that is skin. Where there is none, statistics are None.
+        Returns:
+            `photo` (size), `box`, `skin_share` (part of the box that is skin), `maps` (`unit`,
+            `mean`, `std`, `p5` and `p95` of each; None where there is no skin), `light`, `camera`,
+            `version` and `model`.
         """
-        skin = self.mask > SKIN
+        skin = self.mask > SKIN_THRESHOLD
         height, width = skin.shape
         maps = {name: value for name, value in self.maps().items() if name != "mask"}
         return {
             "photo": {"width": width, "height": height},
             "box": self.box._asdict(),
-            "skin_share": _short(float(np.mean(skin[self.box.slices]))),
+            "skin_share": _round(float(np.mean(skin[self.box.slices]))),
             "maps": {
-                name: {"unit": self.output(name).unit} | _statistics(value[skin])
+                name: {"unit": self.describe_map(name).unit} | _summarise(value[skin])
                 for name, value in maps.items()
             },
-            "light": _shortened(self.light),
-            "camera": _shortened(self.camera),
+            "light": _round_all(self.light),
+            "camera": _round_all(self.camera),
             "version": __version__,
             "model": self.model,
         }
 
 
-def _statistics(values: NDArray[np.float32]) -> dict[str, float | None]:
+def _summarise(values: NDArray[np.float32]) -> dict[str, float | None]:
     if values.size == 0:
         return dict.fromkeys(("mean", "std", "p5", "p95"))
     p5, p95 = np.percentile(values, [5, 95])
     wide = values.astype(np.float64)
     numbers = {"mean": wide.mean(), "std": wide.std(), "p5": p5, "p95": p95}
-    return {name: _short(float(number)) for name, number in numbers.items()}
+    return {name: _round(float(number)) for name, number in numbers.items()}
 
 
-def _shortened(numbers: Any) -> Any:
+def _round_all(numbers: Any) -> Any:
     if isinstance(numbers, dict):
-        return {name: _shortened(value) for name, value in numbers.items()}
-    return [_short(number) for number in numbers] if isinstance(numbers, list) else _short(numbers)
+        return {name: _round_all(value) for name, value in numbers.items()}
+    return [_round(number) for number in numbers] if isinstance(numbers, list) else _round(numbers)
 
 
-def _short(number: float) -> float:
+def _round(number: float) -> float:
+    """Six significant digits."""
     return float(f"{number:.6g}")

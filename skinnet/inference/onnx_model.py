@@ -1,4 +1,4 @@
-"""The project's ONNX files: opened, checked and described by their own metadata."""
+"""The project's ONNX files: open them, check them, and read their metadata."""
 
 import json
 from collections.abc import Mapping
@@ -14,17 +14,21 @@ from onnxruntime.capi import onnxruntime_pybind11_state as ort_errors
 from skinnet.errors import InputError
 
 ONNX_FORMAT = "1"
-"""Version of the contract between the files and this code."""
+"""Version of the inputs, outputs and metadata that files and this code agree on."""
 
 SHIPPED_ENCODER = Path(__file__).parent / "models" / "skin.onnx"
-"""The encoder that comes with the package; its decoder has its place in the same folder."""
+"""The encoder that comes with the package; its decoder is in the same folder."""
 
 MAP_NAMES = ("melanin", "hemoglobin", "shading", "specular", "offset")
+"""Maps that the encoder gives and the decoder takes; the encoder gives `mask` too."""
+
 CAPTURE_NAMES = ("light", "temperature", "camera", "white_balance")
+"""Light and camera of a photograph, which the encoder gives and the decoder takes."""
+
 _INPUTS = {"encoder": {"image"}, "decoder": {*MAP_NAMES, *CAPTURE_NAMES}}
 _OUTPUTS = {"encoder": {*MAP_NAMES, *CAPTURE_NAMES, "mask"}, "decoder": {"image"}}
 _REMEDY = "give a file made by `python -m export`, or leave --model out"
-_REFUSED = (
+_RUNTIME_ERRORS = (
     *(ort_errors.Fail, ort_errors.InvalidArgument, ort_errors.InvalidGraph),
     *(ort_errors.InvalidProtobuf, ort_errors.NoSuchFile, ort_errors.NotImplemented),
     *(ort_errors.RuntimeException, RuntimeError, ValueError),
@@ -32,7 +36,7 @@ _REFUSED = (
 
 
 class OutputInfo(NamedTuple):
-    """What an output means: its unit, its least and greatest value, and a line about it."""
+    """Unit, range and description of one output of the encoder."""
 
     unit: str
     range: tuple[float, float]
@@ -41,7 +45,23 @@ class OutputInfo(NamedTuple):
 
 @dataclass(frozen=True)
 class OnnxModel:
-    """An open ONNX file of the project, with the metadata that is needed to use it."""
+    """An open encoder or decoder with its metadata.
+
+    Attributes:
+        path: the file.
+        session: the onnxruntime session.
+        version: version of skinnet that exported the file.
+        trained_on: what the weights were trained on.
+        working_size: longer side, in pixels, to which the encoder's photographs are resized.
+        lights: names of the lights that the output `light` weights.
+        output_info: unit, range and description of each map of the encoder; empty for a decoder.
+
+    Example:
+        >>> encoder = open_model(SHIPPED_ENCODER, "encoder", threads=1)
+        >>> maps = encoder.run({"image": np.full((1, 64, 48, 3), 180, np.uint8)})
+        >>> maps["melanin"].shape, encoder.output_info["melanin"].unit
+        ((1, 64, 48), 'melanosome volume fraction')
+    """
 
     path: Path
     session: onnxruntime.InferenceSession
@@ -49,94 +69,128 @@ class OnnxModel:
     trained_on: str
     working_size: int
     lights: tuple[str, ...]
-    outputs: Mapping[str, OutputInfo]
+    output_info: Mapping[str, OutputInfo]
 
     def run(self, inputs: Mapping[str, NDArray[Any]]) -> dict[str, NDArray[np.float32]]:
-        """Outputs by name. Raises `InputError` if the network cannot take these inputs."""
+        """Run the network.
+
+        Args:
+            inputs: `image`, uint8 sRGB [batch, h, w, 3], for an encoder; `MAP_NAMES`, [batch, h, w]
+                or [batch, h, w, 3], and `CAPTURE_NAMES` for a decoder.
+
+        Returns:
+            Outputs by name; the decoder's `image` is sRGB [batch, h, w, 3].
+
+        Raises:
+            InputError: the network cannot take these inputs.
+        """
         names = [output.name for output in self.session.get_outputs()]
         try:
             values = self.session.run(names, dict(inputs))
-        except _REFUSED as error:
+        except _RUNTIME_ERRORS as error:
             raise InputError(f"{self.path} failed on this photograph: {error}") from error
         return dict(zip(names, values, strict=True))
 
 
 def get_decoder_path(encoder: Path) -> Path:
-    """The decoder beside an encoder: X.decoder.onnx beside X.onnx."""
+    """Name the decoder that belongs to an encoder.
+
+    Args:
+        encoder: X.onnx.
+
+    Returns:
+        X.decoder.onnx in the same folder.
+
+    Example:
+        >>> get_decoder_path(Path("runs/skin.onnx")).name
+        'skin.decoder.onnx'
+    """
     return encoder.with_name(f"{encoder.stem}.decoder.onnx")
 
 
 def open_model(path: Path, kind: str, threads: int | None = None) -> OnnxModel:
-    """Open an encoder or a decoder (`kind`), run on `threads` threads (None: all cores).
+    """Open an encoder or a decoder.
 
-    Raises `InputError` if the file is missing, damaged, not the project's, of another format, or of
-    the other kind.
+    Args:
+        path: the ONNX file.
+        kind: "encoder" or "decoder".
+        threads: number of threads; None for all cores.
+
+    Returns:
+        The open model.
+
+    Raises:
+        InputError: the file is missing, damaged, not one of skinnet's, of another format, or of
+            the other kind.
     """
     if not path.is_file():
         raise InputError(f"There is no {kind} file {path}; {_REMEDY}.")
     options = onnxruntime.SessionOptions()
-    options.log_severity_level = 4  # what goes wrong is raised, and said once
+    options.log_severity_level = 4  # errors are raised; onnxruntime need not print them too
     if threads is not None:
         options.intra_op_num_threads = threads
     try:
         session = onnxruntime.InferenceSession(path, options, providers=["CPUExecutionProvider"])
-    except _REFUSED as error:
+    except _RUNTIME_ERRORS as error:
         raise InputError(
-            f"{path} is not a whole ONNX file (damaged, cut short, or something else); {_REMEDY}."
+            f"{path} is not a complete ONNX file (damaged, cut short, or something else); "
+            f"{_REMEDY}."
         ) from error
-    notes = session.get_modelmeta().custom_metadata_map
-    _check(path, kind, session, notes)
-    return _described(path, session, notes)
+    metadata = session.get_modelmeta().custom_metadata_map
+    _check(path, kind, session, metadata)
+    return _read_metadata(path, session, metadata)
 
 
 def _check(
-    path: Path, kind: str, session: onnxruntime.InferenceSession, notes: Mapping[str, str]
+    path: Path, kind: str, session: onnxruntime.InferenceSession, metadata: Mapping[str, str]
 ) -> None:
-    found = notes.get("skinnet.kind")
-    if found is None:
+    actual = metadata.get("skinnet.kind")
+    if actual is None:
         raise InputError(f"{path} is an ONNX file, but not one of skinnet's; {_REMEDY}.")
-    if notes.get("skinnet.format") != ONNX_FORMAT:
+    if metadata.get("skinnet.format") != ONNX_FORMAT:
         raise InputError(
-            f"{path} has format {notes.get('skinnet.format')}, and this skinnet reads format "
+            f"{path} has format {metadata.get('skinnet.format')}, and this skinnet reads format "
             f"{ONNX_FORMAT}; export it again, or install the skinnet that made it."
         )
-    if found != kind:
-        raise InputError(f"{path} is {_a(found)}, and {_a(kind)} is wanted; {_REMEDY}.")
+    if actual != kind:
+        raise InputError(
+            f"{path} is {_with_article(actual)}, but {_with_article(kind)} is needed; {_REMEDY}."
+        )
     inputs = {item.name for item in session.get_inputs()}
     outputs = {item.name for item in session.get_outputs()}
     if inputs != _INPUTS[kind] or not _OUTPUTS[kind] <= outputs:
         raise InputError(
-            f"{path} says that it is {_a(kind)} but takes {', '.join(sorted(inputs))} and gives "
-            f"{', '.join(sorted(outputs))}; {_REMEDY}."
+            f"{path} says that it is {_with_article(kind)}, but its inputs are "
+            f"{', '.join(sorted(inputs))} and its outputs {', '.join(sorted(outputs))}; {_REMEDY}."
         )
 
 
-def _described(
-    path: Path, session: onnxruntime.InferenceSession, notes: Mapping[str, str]
+def _read_metadata(
+    path: Path, session: onnxruntime.InferenceSession, metadata: Mapping[str, str]
 ) -> OnnxModel:
     try:
-        notes_on = json.loads(notes["skinnet.outputs"])
-        named = (*MAP_NAMES, "mask") if notes["skinnet.kind"] == "encoder" else ()
-        size = int(notes["skinnet.working_size"])
+        outputs = json.loads(metadata["skinnet.outputs"])
+        maps = (*MAP_NAMES, "mask") if metadata["skinnet.kind"] == "encoder" else ()
+        size = int(metadata["skinnet.working_size"])
         if size < 1:
             raise ValueError(f"working size {size}")
         return OnnxModel(
             path,
             session,
-            notes["skinnet.version"],
-            notes["skinnet.trained_on"],
+            metadata["skinnet.version"],
+            metadata["skinnet.trained_on"],
             size,
-            tuple(json.loads(notes["skinnet.lights"])),
-            {name: _output(notes_on[name]) for name in named},
+            tuple(json.loads(metadata["skinnet.lights"])),
+            {name: _read_output_info(outputs[name]) for name in maps},
         )
     except (KeyError, ValueError, TypeError, AttributeError) as error:
         raise InputError(f"The metadata of {path} is damaged ({error!r}); {_REMEDY}.") from error
 
 
-def _output(note: Mapping[str, Any]) -> OutputInfo:
-    low, high = note["range"]
-    return OutputInfo(str(note["unit"]), (float(low), float(high)), str(note["description"]))
+def _read_output_info(entry: Mapping[str, Any]) -> OutputInfo:
+    low, high = entry["range"]
+    return OutputInfo(str(entry["unit"]), (float(low), float(high)), str(entry["description"]))
 
 
-def _a(kind: str) -> str:
+def _with_article(kind: str) -> str:
     return f"an {kind}" if kind[:1] in "aeiou" else f"a {kind}"

@@ -9,7 +9,7 @@ from PIL import Image, ImageDraw, ImageFont
 
 from skinnet.images.resizing import resize
 from skinnet.images.srgb import to_uint8
-from skinnet.inference.decomposition import SKIN, Decomposition
+from skinnet.inference.decomposition import SKIN_THRESHOLD, Decomposition
 
 TILE = 300
 """Width and height of a picture in the panel, in pixels."""
@@ -107,7 +107,7 @@ def _draw_map(
     top: float | None = None,
 ) -> Image.Image:
     """A tile of values [h, w] from 0 up along anchor colours, blank where `mask` is 0."""
-    top = _top(values[mask > SKIN]) if top is None else top
+    top = _top(values[mask > SKIN_THRESHOLD]) if top is None else top
     weight = np.clip(mask, 0, 1)[..., None]
     shown = weight * colour_map(values / top, anchors) + (1 - weight) * np.array(BLANK)
     return _tile(caption, shown.astype(np.uint8), unit, anchors, top)

@@ -77,7 +77,7 @@ def _write_map(
     path: Path, name: str, values: NDArray[np.float32], decomposition: Decomposition
 ) -> None:
     """A 16-bit PNG in which value = scale * pixel + offset; its text says scale, offset, unit."""
-    output = decomposition.output(name)
+    output = decomposition.describe_map(name)
     low = min(output.range[0], float(values.min()))
     high = max(output.range[1], float(values.max()))
     scale = (high - low) / _LEVELS or 1.0

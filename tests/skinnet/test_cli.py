@@ -210,7 +210,7 @@ def test_a_bad_model_is_said_once(
     (tmp_path / "bad.onnx").write_bytes(b"bad")
     assert main([verb, str(photo), "--model", str(tmp_path / "bad.onnx")]) == 2
     (line,) = capsys.readouterr().err.splitlines()
-    assert line.startswith(f"skinnet: {tmp_path / 'bad.onnx'} is not a whole ONNX file")
+    assert line.startswith(f"skinnet: {tmp_path / 'bad.onnx'} is not a complete ONNX file")
     assert names(tmp_path) == ["a.png", "bad.onnx"]
 
 

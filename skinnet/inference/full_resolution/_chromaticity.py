@@ -1,4 +1,4 @@
-"""What a photograph of skin shows, in logarithms: chromaticity, brightness, and their noise."""
+"""Log colours of the skin in a photograph: chromaticity, brightness, and their noise."""
 
 from collections.abc import Mapping
 from concurrent.futures import Executor
@@ -10,118 +10,127 @@ from scipy import ndimage
 
 from skinnet.images.resizing import resize
 from skinnet.images.srgb import srgb_to_linear
-from skinnet.inference._editing import UNTOUCHED, WHOLLY
+from skinnet.inference._editing import soften_mask
 
-QUANTISED = 0.0015
-"""Least noise of log chromaticity at half size, from 8 bits."""
+_QUANTISATION_NOISE = 0.0015
+"""Least standard deviation of log chromaticity at half size, from 8 bits."""
 
-_DARKEST, _BRIGHTEST = 0.004, 0.95
-"""Linear values outside which a pixel has no colour to speak of."""
+_MIN_LINEAR, _MAX_LINEAR = 0.004, 0.95
+"""Linear values outside which a channel is too noisy or saturated to have a chromaticity."""
 
-_NEARBY, _HALO = 1.35, 1.5
-"""Largest difference in log brightness to the skin around, and the width of that in the network's
-pixels; hair, brows and nostrils are beyond."""
+_MAX_CONTRAST, _CONTRAST_RAMP = 1.35, 0.35
+"""Difference in log brightness to the skin nearby at which a pixel is not skin (hair, brows and
+nostrils exceed it), and the width over which its weight falls to 0."""
 
-_QUANTILE, _IN_SIGMAS = 0.8, 1.2816
-"""Quantile of a magnitude, and what it is of a normal distribution's standard deviation."""
+_NEARBY = 1.5
+"""Standard deviation, in pixels of the network, of the Gaussian that averages skin nearby."""
+
+_QUANTILE, _QUANTILE_IN_SIGMAS = 0.8, 1.2816
+"""A quantile of magnitudes, and its value for a standard normal distribution."""
 
 Image = NDArray[np.float32]
 Size = tuple[int, int]
 """Width and height."""
 
 
-class Seen(NamedTuple):
-    """The skin of a photograph in logarithms, [3, h, w]: R/G, B/G, G; `weight` [h, w] of 0 where a
-    pixel shows no skin, or is too dark or bright to have a colour."""
+class LogColours(NamedTuple):
+    """Log colours of skin, filled in elsewhere with those of skin nearby.
 
-    logs: Image
+    `channels` [3, h, w] are log R/G, log B/G and log G. `weight` [h, w] is 0 where a pixel is no
+    skin, or too dark or too bright to have a chromaticity.
+    """
+
+    channels: Image
     weight: Image
 
 
-def look(crop: NDArray[np.uint8], codes: Mapping[str, Image], size: Size, pool: Executor) -> Seen:
-    """The crop at that size in logarithms, where it is not skin filled in from skin nearby."""
-    gloss = sized(codes["specular"], size)
+def measure_log_colours(
+    crop: NDArray[np.uint8], maps: Mapping[str, Image], size: Size, pool: Executor
+) -> LogColours:
+    """Log colours of uint8 sRGB [H, W, 3] at another size, without specular reflection."""
+    specular = resize_channel(maps["specular"], size)
 
-    def channel(index: int) -> Image:
-        return sized(srgb_to_linear(crop[..., index]), size)
+    def linearise(index: int) -> Image:
+        return resize_channel(srgb_to_linear(crop[..., index]), size)
 
-    linear = np.stack(list(pool.map(channel, range(3))))
-    bright = linear.max(0) > _BRIGHTEST
-    linear = np.maximum(linear - gloss, np.float32(_DARKEST))
-    weight = soft_mask(sized(codes["mask"], size)) * ~bright
-    weight *= linear[1] > 2 * _DARKEST
+    linear = np.stack(list(pool.map(linearise, range(3))))
+    saturated = linear.max(0) > _MAX_LINEAR
+    linear = np.maximum(linear - specular, np.float32(_MIN_LINEAR))
+    weight = soften_mask(resize_channel(maps["mask"], size)) * ~saturated
+    weight *= linear[1] > 2 * _MIN_LINEAR
     logs = np.log(linear)
     logs[0] -= logs[1]
     logs[2] -= logs[1]
-    return _filled(logs[[0, 2, 1]], weight, codes["mask"].shape)
+    height, width = maps["mask"].shape
+    return _fill_off_skin(logs[[0, 2, 1]], weight, (width, height))
 
 
-def _filled(logs: Image, weight: Image, small: tuple[int, ...]) -> Seen:
-    size: Size = (weight.shape[1], weight.shape[0])
-    near = _near(logs, weight, (small[1], small[0]))
-    ground = sized(near[2], size)
-    weight = weight * (_NEARBY - np.abs(logs[2] - ground)).clip(0, 0.35) / 0.35
-    near = _near(logs, weight, (small[1], small[0]))
-    for log, low in zip(logs, near, strict=True):
-        fill = sized(low, size)
-        log -= fill
-        log *= weight
-        log += fill
-    return Seen(logs, weight)
-
-
-def _near(logs: Image, weight: Image, small: Size) -> Image:
-    """Mean of the skin around each of the network's pixels, or of all skin far from any."""
-    sums = [sized(log * weight, small) for log in logs]
-    total = sized(weight, small)
-    means = [float(one.sum() / max(total.sum(), 1e-6)) for one in sums]
-    around = ndimage.gaussian_filter(total, _HALO) + 1e-3
-    return np.stack(
-        [
-            (ndimage.gaussian_filter(one, _HALO) + 1e-3 * mean) / around
-            for one, mean in zip(sums, means, strict=True)
-        ]
-    ).astype(np.float32)
-
-
-def colour(seen: Seen, small: Size) -> Image:
-    """Logarithms of R, G and B [3, h, w] at the network's size."""
-    red, blue, green = (sized(log, small) for log in seen.logs)
+def reduce_to_log_rgb(colours: LogColours, size: Size) -> Image:
+    """Log R, G and B [3, h, w] at another size."""
+    red, blue, green = (resize_channel(channel, size) for channel in colours.channels)
     return np.stack([red + green, green, blue + green])
 
 
-def noise_of(seen: Seen) -> Image:
-    """Covariance [2, 2] of the noise of log chromaticity, from its steps between neighbours."""
-    steps = np.diff(seen.logs[:2], axis=-1) / np.float32(2**0.5)
-    least = QUANTISED**2 * np.array([[1, 0.5], [0.5, 1]], np.float32)
-    return larger(spread(steps, seen.weight[:, 1:]), least)
+def estimate_noise(colours: LogColours) -> Image:
+    """Covariance [2, 2] of the noise of log chromaticity, from differences of neighbours."""
+    differences = np.diff(colours.channels[:2], axis=-1) / np.float32(2**0.5)
+    least = _QUANTISATION_NOISE**2 * np.array([[1, 0.5], [0.5, 1]], np.float32)
+    return choose_larger(estimate_covariance(differences, colours.weight[:, 1:]), least)
 
 
-def spread(values: Image, weight: Image) -> Image:
-    """Robust covariance [2, 2] of values [2, h, w] over skin: freckles hardly count in a median."""
+def estimate_covariance(values: Image, weight: Image) -> Image:
+    """Robust covariance [2, 2] of values [2, h, w] over skin.
+
+    Variances come from a quantile of the magnitudes, so that freckles hardly change them.
+    """
     skin = weight > 0.5
     a, b = values[0][skin], values[1][skin]
     if not a.size:
         return np.zeros((2, 2), np.float32)
-    first, second, apart = (
-        (np.quantile(np.abs(v), _QUANTILE) / _IN_SIGMAS) ** 2 for v in (a, b, a - b)
+    first, second, difference = (
+        (np.quantile(np.abs(v), _QUANTILE) / _QUANTILE_IN_SIGMAS) ** 2 for v in (a, b, a - b)
     )
-    both = np.clip((first + second - apart) / 2, *(np.array([-0.9, 0.9]) * (first * second) ** 0.5))
+    limits = np.array([-0.9, 0.9]) * (first * second) ** 0.5
+    both = np.clip((first + second - difference) / 2, *limits)
     return np.array([[first, both], [both, second]], np.float32)
 
 
-def larger(a: Image, b: Image) -> Image:
+def choose_larger(a: Image, b: Image) -> Image:
     """The covariance of greater total variance."""
     return np.asarray(a if np.trace(a) > np.trace(b) else b, np.float32)
 
 
-def soft_mask(mask: Image) -> Image:
-    """Rises from 0 to 1 between the masks between which an edit sets in, too."""
-    return ((mask - np.float32(UNTOUCHED)) * np.float32(1 / (WHOLLY - UNTOUCHED))).clip(0, 1)
-
-
-def sized(channel: Image, size: Size) -> Image:
-    """A channel [h, w] of another size, or the same one."""
+def resize_channel(channel: Image, size: Size) -> Image:
+    """A channel [h, w] at another size; the same array if it has that size already."""
     if (channel.shape[1], channel.shape[0]) == size:
         return channel.astype(np.float32, copy=False)
     return resize(channel.astype(np.float32, copy=False), *size)
+
+
+def _fill_off_skin(channels: Image, weight: Image, small: Size) -> LogColours:
+    """Replace what is not skin by the mean of skin nearby; works in place on `channels`."""
+    size: Size = (weight.shape[1], weight.shape[0])
+    nearby = _average_nearby(channels, weight, small)
+    contrast = np.abs(channels[2] - resize_channel(nearby[2], size))
+    weight = weight * (_MAX_CONTRAST - contrast).clip(0, _CONTRAST_RAMP) / _CONTRAST_RAMP
+    nearby = _average_nearby(channels, weight, small)
+    for channel, mean in zip(channels, nearby, strict=True):
+        fill = resize_channel(mean, size)
+        channel -= fill
+        channel *= weight
+        channel += fill
+    return LogColours(channels, weight)
+
+
+def _average_nearby(channels: Image, weight: Image, small: Size) -> Image:
+    """Mean of the skin around each of the network's pixels, or of all skin if none is near."""
+    sums = [resize_channel(channel * weight, small) for channel in channels]
+    total = resize_channel(weight, small)
+    means = [float(one.sum() / max(total.sum(), 1e-6)) for one in sums]
+    around = ndimage.gaussian_filter(total, _NEARBY) + 1e-3
+    return np.stack(
+        [
+            (ndimage.gaussian_filter(one, _NEARBY) + 1e-3 * mean) / around
+            for one, mean in zip(sums, means, strict=True)
+        ]
+    ).astype(np.float32)

@@ -13,7 +13,7 @@ from skinnet import Decomposer, Decomposition, __version__
 from skinnet.errors import InputError, NoFaceError
 from skinnet.images import Box, srgb_to_linear
 from skinnet.inference import draw_panel, open_model, round_up
-from skinnet.inference._editing import apply_gain, colour_gain, edge_fade
+from skinnet.inference._editing import apply_gain, compute_gain, fade_edges
 
 SaveModel = Callable[..., Path]
 
@@ -152,7 +152,7 @@ def test_factors_out_of_range_are_refused(
 def test_gain_is_exactly_one_where_nothing_changes() -> None:
     colours = np.random.default_rng(0).random((6, 5, 3), np.float32)
     colours[0] = 0
-    assert (colour_gain(colours, colours, np.zeros((6, 5), np.float32)) == 1).all()
+    assert (compute_gain(colours, colours, np.zeros((6, 5), np.float32)) == 1).all()
 
 
 def test_gloss_is_not_tinted() -> None:
@@ -164,7 +164,7 @@ def test_gloss_is_not_tinted() -> None:
 
 
 def test_edits_fade_towards_edges_inside_the_photograph() -> None:
-    fade = edge_fade((50, 50), Box(0, 10, 60, 70), (100, 60))
+    fade = fade_edges((50, 50), Box(0, 10, 60, 70), (100, 60))
     assert fade[25, 0] == fade[25, -1] == 1
     assert fade[0, 25] < 0.2 and fade[-1, 25] < 0.2
 
@@ -196,7 +196,7 @@ def test_damaged_model_files_are_refused(save_model: SaveModel, content: bytes |
     path = save_model()
     whole = path.read_bytes()
     path.write_bytes(whole[: len(whole) // 2] if isinstance(content, str) else content)
-    with pytest.raises(InputError, match=r"changed\.onnx is not a whole ONNX file .*python -m"):
+    with pytest.raises(InputError, match=r"changed\.onnx is not a complete ONNX file .*python -m"):
         Decomposer(path).load()
 
 
@@ -215,7 +215,7 @@ def test_missing_model_files_are_named(save_model: SaveModel, tmp_path: Path) ->
         ({"kind": None}, "is an ONNX file, but not one of skinnet's"),
         ({"format": "2"}, "has format 2, and this skinnet reads format 1; export it again"),
         ({"format": None}, "has format None"),
-        ({"kind": "decoder"}, "is a decoder, and an encoder is wanted"),
+        ({"kind": "decoder"}, "is a decoder, but an encoder is needed"),
         ({"lights": "D, A"}, "The metadata of .* is damaged"),
         ({"working_size": "large"}, "The metadata of .* is damaged"),
         ({"working_size": "0"}, "The metadata of .* is damaged"),
@@ -237,7 +237,9 @@ def test_a_file_with_other_outputs_is_refused(tmp_path: Path) -> None:
     model = helper.make_model(graph, opset_imports=[helper.make_opsetid("", 20)], ir_version=10)
     helper.set_model_props(model, {"skinnet.kind": "encoder", "skinnet.format": "1"})
     onnx.save(model, tmp_path / "a.onnx")
-    with pytest.raises(InputError, match="says that it is an encoder but takes x and gives y"):
+    with pytest.raises(
+        InputError, match="says that it is an encoder, but its inputs are x and its outputs y"
+    ):
         Decomposer(tmp_path / "a.onnx").load()
 
 
@@ -245,7 +247,7 @@ def test_lights_that_are_not_weighed_are_refused(
     save_model: SaveModel, astronaut: np.ndarray
 ) -> None:
     path = save_model(lights='["D", "A", "F2"]')
-    with pytest.raises(InputError, match="names 3 lights and weighs 2; export it again"):
+    with pytest.raises(InputError, match="names 3 lights, but gives 2 weights; export it again"):
         Decomposer(path)(astronaut)
 
 
