@@ -1,18 +1,16 @@
-"""Pictures: energy in is energy out, albedo where it belongs, smooth edges."""
+"""Shading: energy in is energy out, albedo where it belongs, smooth edges."""
 
 import numpy as np
 import pytest
 from trimesh.creation import icosphere
 
 from skinnet.errors import InputError
-from skinnet.images import linear_to_srgb, to_uint8
 from skinnet.mesh._vectors import normalise
 from skinnet.mesh.mesh import Mesh
 from skinnet.render._shading import EXPONENT, shade
 from skinnet.render._view_axes import view_axes
 from skinnet.render.lights import DirectionalLight, SphericalHarmonics
-from skinnet.render.rendering import render
-from skinnet.render.views import OrthographicView, frame_face
+from skinnet.render.views import OrthographicView
 from skinnet.render.visibility import trace_geometry
 
 _SPHERE = icosphere(subdivisions=4)
@@ -64,7 +62,7 @@ def test_lights_add_up() -> None:
     assert np.allclose(both, sum(shade(buffers, WHITE, [lamp]).image for lamp in lamps))
 
 
-def test_a_texel_is_seen_where_it_lies() -> None:
+def test_a_texel_appears_where_it_lies() -> None:
     albedo = np.random.default_rng(0).random((8, 8, 3))
     buffers = trace_geometry(plane(), above(8, 4.0))
     image, alpha = shade(buffers, albedo, [even(1.0)])
@@ -89,20 +87,10 @@ def test_a_highlight_stands_halfway_and_is_of_its_strength() -> None:
 
 def test_samples_are_averaged_in_linear_light() -> None:
     view = OrthographicView((4, 4), np.array([0.25, 0.25, 10.0]), view_axes(0.0), 2.0)
-    relit = shade(trace_geometry(plane(), view, samples=4), WHITE, [even(0.5)])
+    shaded = shade(trace_geometry(plane(), view, samples=4), WHITE, [even(0.5)])
     # The square ends at x = 1, a quarter of the way through a pixel of half a unit.
-    assert relit.alpha[2].tolist() == [1, 1, 1, 0.5] or relit.alpha[2, 3] == pytest.approx(0.5)
-    assert np.allclose(relit.image, 0.5 * relit.alpha[..., None])
-
-
-def test_render_is_srgb_over_a_background() -> None:
-    view = frame_face(BALL.vertices, (24, 32))
-    picture = render(BALL, np.full(3, 0.5), [even(0.6)], view, background=(0.0, 0.2, 1.0))
-    assert picture.dtype == np.uint8 and picture.shape == (24, 32, 3)
-    assert (picture[12, 16] == to_uint8(linear_to_srgb(np.array([0.3])))).all()
-    assert picture[0, 0].tolist() == to_uint8(linear_to_srgb(np.array([0.0, 0.2, 1.0]))).tolist()
-    clipped = render(BALL, WHITE, [even(7.0)], view, samples=1)
-    assert (clipped == 255).all()
+    assert shaded.alpha[2].tolist() == [1, 1, 1, 0.5] or shaded.alpha[2, 3] == pytest.approx(0.5)
+    assert np.allclose(shaded.image, 0.5 * shaded.alpha[..., None])
 
 
 def test_a_texture_needs_texture_coordinates() -> None:
@@ -115,9 +103,3 @@ def test_a_texture_needs_texture_coordinates() -> None:
 def test_a_light_from_nowhere_is_refused(direction: tuple[float, float, float]) -> None:
     with pytest.raises(InputError, match="direction"):
         shade(trace_geometry(BALL, above(10, 4.0)), WHITE, [DirectionalLight(direction)])
-
-
-def test_an_empty_picture_is_its_background() -> None:
-    view = OrthographicView((5, 5), np.array([99.0, 0, 10]), view_axes(0.0), 1.0)
-    lamps = [DirectionalLight((0.0, 0.0, 1.0), angle=3.0), even(1.0)]
-    assert (render(plane(), np.ones((2, 2, 3)), lamps, view) == 255).all()

@@ -1,4 +1,4 @@
-"""Cameras: rays go where points are seen, and a face fills the picture the right way around."""
+"""Views: rays go where points are projected, and a face fills the picture the right way around."""
 
 import numpy as np
 import pytest
@@ -22,7 +22,7 @@ def views() -> list[View]:
 
 @pytest.mark.parametrize("view", views())
 @pytest.mark.parametrize("samples", [1, 3])
-def test_a_point_on_a_ray_is_seen_in_its_pixel(view: View, samples: int) -> None:
+def test_a_point_on_a_ray_is_projected_to_its_pixel(view: View, samples: int) -> None:
     origins, directions = view.rays(samples)
     assert origins.shape == (30 * 40 * samples**2, 3)
     assert np.allclose(np.linalg.norm(directions, axis=1), 1)
@@ -35,16 +35,16 @@ def test_from_the_front_up_is_up_and_the_left_side_is_at_the_right() -> None:
     view = frame_face(HEAD, (200, 160))
     up, left, middle = view.project(HEAD.mean(0) + [[0, 50, 0], [50, 0, 0], [0, 0, 0]])
     assert up[1] < middle[1] - 5 and left[0] > middle[0] + 5
-    turned = frame_face(HEAD, (200, 160), yaw=90.0)
-    assert np.allclose(turned.rotation[2], [1, 0, 0])
+    side = frame_face(HEAD, (200, 160), yaw=90.0)
+    assert np.allclose(side.rotation[2], [1, 0, 0])
     assert np.allclose(frame_face(HEAD, (200, 160), pitch=90.0).rotation[2], [0, 1, 0])
 
 
 @given(st.floats(-180, 180), st.floats(-80, 80), st.floats(5, 70), st.sampled_from([120, 200, 333]))
-def test_front_leaves_the_whole_face_inside(
-    turn: float, tilt: float, field: float, width: int
+def test_the_whole_face_is_inside_the_frame(
+    yaw: float, pitch: float, field_of_view: float, width: int
 ) -> None:
-    view = frame_face(HEAD, (200, width), turn, tilt, field, fill=0.9)
+    view = frame_face(HEAD, (200, width), yaw, pitch, field_of_view, fill=0.9)
     assert np.allclose(view.rotation @ view.rotation.T, np.eye(3), atol=1e-12)
     assert np.linalg.det(view.rotation) > 0
     share = np.abs(view.project(HEAD) / [width / 2, 100] - 1)
