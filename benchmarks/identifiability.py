@@ -97,7 +97,7 @@ def _daylight(lot: Lot) -> Lot:
 def colours(lot: Lot, decoder: SkinDecoder, measured: bool) -> Tensor:
     """Log sRGB [count, 3 patches] in eight bits, by measured cameras or the mean."""
     matrix = measured_matrix(lot, decoder.camera) if measured else mean_matrix(lot, decoder.camera)
-    skin = decoder.skin(lot["f_mel"][:, None], lot["f_blood"][:, None], matrix)[:, :, 0]
+    skin = decoder.albedo(lot["f_mel"][:, None], lot["f_blood"][:, None], matrix)[:, :, 0]
     linear = (skin + lot["gloss"][:, None, None]) * lot["shading"][:, None]
     display = (toned(lot, linear[:, :, None].clamp_min(0)) * 255).round() / 255
     return torch.log(display.clamp_min(0.5 / 255)).flatten(1)

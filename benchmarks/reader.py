@@ -58,7 +58,7 @@ class Composed(NamedTuple):
 def composed(maps: SkinMaps, capture: Capture, decoder: SkinDecoder) -> Composed:
     """The photograph that a reading makes, step by step."""
     matrix = decoder.camera.matrix(capture)
-    albedo = decoder.skin(maps.melanin, maps.hemoglobin, matrix)
+    albedo = decoder.albedo(maps.melanin, maps.hemoglobin, matrix)
     white = matrix.sum(-2)[..., None, None]
     gloss = maps.specular[:, None] * white
     explained = maps.shading[:, None] * albedo + gloss

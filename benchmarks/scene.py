@@ -77,7 +77,7 @@ def on(values: Tensor, skin: Tensor) -> Tensor:
 def under_daylight(melanin: Tensor, hemoglobin: Tensor, decoder: SkinDecoder) -> Tensor:
     """Linear sRGB [pixels, 3] of skin under D65, seen by the mean camera."""
     matrix = decoder.camera.matrix(decoder.camera.standard())
-    image = decoder.skin(melanin[None, None], hemoglobin[None, None], matrix[None])
+    image = decoder.albedo(melanin[None, None], hemoglobin[None, None], matrix[None])
     return image[0, :, 0].mT
 
 

@@ -221,6 +221,6 @@ def render_fitted(lot: dict[str, Tensor], decoder: SkinDecoder, split: str = "tr
     white = matrix.sum(-2)[:, :, None, None]
     # Eyes and mouth are holes or unknown; the wall is lit evenly.
     other = white * (lot["wall"][:, :, None, None] * (1 - hit) + hit * 0.05 * lit.diffuse)
-    skin = Skin(melanin, blood, decoder.skin(melanin, blood, matrix), share, lit)
+    skin = Skin(melanin, blood, decoder.albedo(melanin, blood, matrix), share, lit)
     rest = share * lit.diffuse * offset + (1 - share) * other
     return developed(lot, skin, rest, white, capture)

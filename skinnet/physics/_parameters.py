@@ -1,4 +1,4 @@
-"""Constants and volume fractions as users hand them in."""
+"""Checks of constants and volume fractions as users hand them in."""
 
 import torch
 from jaxtyping import Float
@@ -6,8 +6,8 @@ from torch import Tensor, nn
 
 from skinnet.errors import InputError
 
-ROUNDING = 1e-5
-"""How far outside [0, 1] a fraction may lie: interpolation and finite differences do that."""
+_ROUNDING = 1e-5
+"""How far outside [0, 1] a fraction may lie because of interpolation and finite differences."""
 
 
 def register_constant(
@@ -17,7 +17,7 @@ def register_constant(
     dtype: torch.dtype,
     persistent: bool = True,
 ) -> None:
-    """Register `value` under `name`: an `nn.Parameter` as itself, anything else as a buffer."""
+    """Register a value: an `nn.Parameter` as itself, anything else as a buffer."""
     if isinstance(value, nn.Parameter):
         module.register_parameter(name, value)
     elif value is None:
@@ -30,21 +30,20 @@ def register_constant(
 def check_fraction(
     name: str, value: Float[Tensor, "*batch"] | float, like: Tensor
 ) -> Float[Tensor, "*batch"]:
-    """A volume fraction as a floating-point tensor on the device of `like`.
+    """Return a volume fraction as a floating-point tensor on the device of `like`.
 
-    Raises `InputError`, a `ValueError`, where a value is not a number or lies outside [0, 1]. In a
-    graph that is being compiled or exported nothing is checked.
+    Nothing is checked in a graph that is being compiled or exported.
+
+    Raises:
+        InputError: Where a value is not a number or lies outside [0, 1].
     """
     floating = isinstance(value, Tensor) and value.is_floating_point()
     fraction = torch.as_tensor(value, dtype=None if floating else like.dtype, device=like.device)
     if torch.compiler.is_compiling() or not fraction.numel():
         return fraction
     low, high = (float(bound) for bound in fraction.detach().aminmax())
-    if not (low >= -ROUNDING and high <= 1 + ROUNDING):
-        raise InputError(_sentence(name, high if low >= -ROUNDING else low))
+    if not (low >= -_ROUNDING and high <= 1 + _ROUNDING):
+        wrong = high if low >= -_ROUNDING else low
+        hint = " Was it given in percent?" if wrong > 1 else ""
+        raise InputError(f"{name} is a volume fraction in [0, 1]; got {wrong:g}.{hint}")
     return fraction
-
-
-def _sentence(name: str, value: float) -> str:
-    hint = " Was it given in percent?" if value > 1 else ""
-    return f"{name} is a volume fraction in [0, 1]; got {value:g}.{hint}"

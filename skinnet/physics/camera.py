@@ -1,4 +1,4 @@
-"""Light, camera and colour pipeline: from spectra to linear sRGB."""
+"""Spectral image formation: light, camera and white balance, from spectra to linear sRGB."""
 
 from functools import cache
 
@@ -6,7 +6,7 @@ import torch
 from jaxtyping import Float
 from torch import Tensor, nn
 
-from skinnet.physics._linear_algebra import invert_3x3
+from skinnet.physics._linear_algebra import apply_matrix, invert_3x3
 from skinnet.physics._parameters import register_constant
 from skinnet.physics._tables import read_table
 from skinnet.physics.capture import Capture
@@ -18,18 +18,39 @@ LIGHTS = ("D", *read_table("illuminants"))
 """Names of the lights in a mixture: daylight of the given temperature, then CIE illuminants."""
 
 CAMERA_COMPONENTS = 6
-"""Components of the camera basis; they explain 92 % of the variance of 52 cameras."""
+"""Principal components of the camera basis; they explain 92 % of the variance of 52 cameras."""
 
 
 class SpectralCamera(nn.Module):
-    """A camera that balances its white: spectra [..., 33] to linear sRGB [..., 3].
+    """A camera with white balance: spectra [..., 33] to linear sRGB [..., 3].
 
-    raw_C = sum_j e_j S_jC r_j (equation 4), wb = raw / white, XYZ = M(S) wb, linear = XYZ -> sRGB.
+    raw_C = sum_j e_j S_jC r_j (equation 4), balanced = raw / white, XYZ = M(S) balanced, and XYZ to
+    linear sRGB. Lights are convex mixtures of `LIGHTS`, of unit sum. Sensitivities are the mean
+    plus principal components of 52 measured cameras, each channel of unit sum.
 
-    Lights are convex mixtures of `LIGHTS`, of unit sum. Sensitivities are the mean plus principal
-    components of 52 measured cameras of unit sum; `explained` [components] is the share of variance
-    of each. `mean` [33, 3], `basis` [components, 33, 3] (one standard deviation each) and `lights`
-    [8, 33] may be replaced, and are trainable if an `nn.Parameter` is handed in.
+    Constants are buffers; one that is handed in as an `nn.Parameter` is trained.
+
+    Args:
+        components: Number of principal components of the measured cameras, at most 51.
+        mean: Mean sensitivity [33, 3]; None: that of the measured cameras.
+        basis: Components [components, 33, 3], one standard deviation each; None: those of the
+            measured cameras.
+        lights: Relative power [8, 33] of the lights in `LIGHTS` that are not daylight.
+        dtype: Precision of the constants; None: torch's default.
+
+    Attributes:
+        explained: Share of the cameras' variance that each component explains.
+
+    Source:
+        Equation 1 of Alotaibi & Smith 2017 (section 3.1) in its discrete form, equation 4 (section
+        3.5). White balance and colour matrix are beyond the paper: a photograph has been through
+        both.
+
+    Example:
+        >>> camera = SpectralCamera()
+        >>> white, grey = camera(torch.stack([torch.ones(33), torch.full((33,), 0.2)]))
+        >>> [round(value, 4) for value in white.tolist() + grey.tolist()]
+        [1.0, 1.0, 1.0, 0.2, 0.2, 0.2]
     """
 
     mean: Tensor
@@ -53,7 +74,7 @@ class SpectralCamera(nn.Module):
         constants = {
             "mean": measured_mean if mean is None else mean,
             "basis": measured_basis[:components] if basis is None else basis,
-            "lights": _unit_sum(torch.stack(list(read_table("illuminants").values())))
+            "lights": _to_unit_sum(torch.stack(list(read_table("illuminants").values())))
             if lights is None
             else lights,
         }
@@ -70,18 +91,31 @@ class SpectralCamera(nn.Module):
     def forward(
         self, reflectance: Float[Tensor, "*shape wavelength"], capture: Capture | None = None
     ) -> Float[Tensor, "*shape 3"]:
-        """Linear sRGB of spectra whose leading axes are those of `capture`, then any others.
+        """Photograph reflectance spectra (equation 4).
 
-        Without a capture: D65, the mean camera, a perfect white balance.
+        Args:
+            reflectance: Spectra whose leading axes are those of `capture`, then any others.
+            capture: Light and camera; None: D65, the mean camera, a perfect white balance.
+
+        Returns:
+            Linear sRGB, not clipped; white is (1, 1, 1).
         """
         return apply_matrix(reflectance, self.matrix(capture or self.standard()))
 
     def standard(self, shape: tuple[int, ...] = ()) -> Capture:
-        """D65, the mean camera and a perfect white balance, for photographs of that shape."""
+        """Return D65, the mean camera and a perfect white balance.
+
+        Args:
+            shape: Leading axes of the capture.
+        """
         return Capture.standard(len(self.lights) + 1, len(self.basis), shape, self.mean)
 
     def matrix(self, capture: Capture) -> Float[Tensor, "*batch wavelength 3"]:
-        """The map from a spectrum to linear sRGB, which is linear for a given light and camera."""
+        """Compute the spectrum-to-sRGB matrix of each capture.
+
+        Args:
+            capture: Light and camera of each photograph.
+        """
         sensitivity = self.sensitivity(capture.camera)
         power = self.mix_lights(capture.light, capture.temperature)
         red, blue = capture.white_balance.unbind(-1)
@@ -91,18 +125,37 @@ class SpectralCamera(nn.Module):
     def mix_lights(
         self, weights: Float[Tensor, "*batch lights"], temperature: Float[Tensor, "*batch"]
     ) -> Float[Tensor, "*batch wavelength"]:
-        """Relative power of a mixture, of unit sum."""
+        """Compute the relative power of mixtures of lights.
+
+        Args:
+            weights: Convex weights of `LIGHTS`.
+            temperature: Correlated colour temperature of the daylight, 4,000 to 25,000 K.
+
+        Returns:
+            Power of unit sum.
+        """
         day = daylight(temperature, self.daylight)
-        return _unit_sum(weights[..., :1] * day + weights[..., 1:] @ self.lights)
+        return _to_unit_sum(weights[..., :1] * day + weights[..., 1:] @ self.lights)
 
     def sensitivity(
         self, coefficients: Float[Tensor, "*batch components"]
     ) -> Float[Tensor, "*batch wavelength 3"]:
-        """Spectral sensitivity of the camera with these coefficients, each channel of unit sum."""
+        """Compute the spectral sensitivity of cameras, each channel of unit sum.
+
+        Args:
+            coefficients: Coefficients of the components, in standard deviations.
+        """
         return self.mean + torch.einsum("...c,cwk->...wk", coefficients, self.basis)
 
     def white(self, capture: Capture) -> Float[Tensor, "*batch 3"]:
-        """Linear sRGB of a perfect diffuser: (1, 1, 1) but for the error of the white balance."""
+        """Compute the linear sRGB of a perfect diffuser.
+
+        Args:
+            capture: Light and camera of each photograph.
+
+        Returns:
+            (1, 1, 1), except for the error of the white balance.
+        """
         return self.matrix(capture).sum(-2)
 
 
@@ -112,14 +165,32 @@ def spectrum_to_srgb(
     observer: Float[Tensor, "wavelength 3"],
     gain: Float[Tensor, "*#batch 3"] | None = None,
 ) -> Float[Tensor, "*batch wavelength 3"]:
-    """Matrix from a reflectance spectrum to linear sRGB under any light and camera.
+    """Compute the matrix from a reflectance spectrum to white-balanced linear sRGB.
 
-    `gain` multiplies the balanced channels; None is a perfect white balance. M is the least-squares
-    map from the sensitivities, each divided by its raw white as the channels it is applied to are,
-    to the observer with its rows scaled so that white goes to D65 (rows
-    that sum to one, as a follow-up paper prints, send it to (1.205, .948, .909)). The rows of the
-    whole map from balanced channels to linear sRGB then sum to one; dividing by that sum changes
-    nothing in exact arithmetic and keeps neutrals neutral in float32.
+    Raw values are balanced by the raw value of white. M, from balanced values to XYZ, is the
+    least-squares map from the balanced sensitivities to the observer, with its rows scaled so that
+    white goes to D65. (Rows that sum to one, as a follow-up paper prints, send white to (1.205,
+    .948, .909).) The rows of the map from balanced values to linear sRGB then sum to one. Dividing
+    by that sum changes nothing in exact arithmetic, and keeps neutrals neutral in float32.
+
+    Args:
+        light: Relative power of the light, of any scale.
+        sensitivity: Sensitivity of the camera, each channel of any scale.
+        observer: CIE 1931 colour matching functions, from `load_observer`.
+        gain: Factors of the balanced channels, the error of the white balance; None: 1.
+
+    Returns:
+        The matrix; a spectrum times it is linear sRGB.
+
+    Source:
+        Equation 4 of Alotaibi & Smith 2017; XYZ to sRGB by IEC 61966-2-1.
+
+    Example:
+        >>> from skinnet.physics import load_camera, load_light, load_observer
+        >>> light, camera = load_light("A"), load_camera("Nikon D200")
+        >>> white = spectrum_to_srgb(light, camera, load_observer()).sum(0)
+        >>> [round(value, 6) for value in white.tolist()]
+        [1.0, 1.0, 1.0]
     """
     white = (light[..., None] * sensitivity).sum(-2, keepdim=True)
     sensitivity = sensitivity / white
@@ -131,16 +202,6 @@ def spectrum_to_srgb(
     to_xyz = to_xyz * (srgb.sum(-1) / to_xyz.sum(-2, keepdim=True))
     to_srgb = to_xyz @ invert_3x3(srgb).mT
     return balanced @ (to_srgb / to_srgb.sum(-2, keepdim=True))
-
-
-def apply_matrix(
-    spectra: Float[Tensor, "*shape wavelength"], matrix: Float[Tensor, "*batch wavelength 3"]
-) -> Float[Tensor, "*shape 3"]:
-    """Spectra [*batch, ..., 33] times one matrix for each element of the batch."""
-    batch = matrix.ndim - 2
-    flat = spectra.flatten(batch, -2) if spectra.ndim - 1 > batch else spectra[..., None, :]
-    product = flat @ matrix
-    return product.reshape(*product.shape[:-2], *spectra.shape[batch:-1], 3)
 
 
 @cache
@@ -159,5 +220,5 @@ def _camera_basis() -> tuple[Tensor, Tensor, Tensor]:
     return mean, basis, values[:kept] ** 2 / (values**2).sum()
 
 
-def _unit_sum(spectra: Float[Tensor, "*batch wavelength"]) -> Float[Tensor, "*batch wavelength"]:
+def _to_unit_sum(spectra: Float[Tensor, "*batch wavelength"]) -> Float[Tensor, "*batch wavelength"]:
     return spectra / spectra.sum(-1, keepdim=True)

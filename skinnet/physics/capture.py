@@ -10,9 +10,18 @@ from torch import Tensor
 class Capture(NamedTuple):
     """Light and camera of each photograph in a batch of any leading shape.
 
-    `light`: weights of `LIGHTS`, convex. `temperature`: of the daylight among them, in kelvin,
-    4,000 to 25,000. `camera`: coefficients of the camera basis, in standard deviations.
-    `white_balance`: natural logarithm of the error in R/G and in B/G; zero is perfect.
+    Attributes:
+        light: Convex weights of the lights in `LIGHTS`.
+        temperature: Correlated colour temperature of the daylight among them, 4,000 to 25,000 K.
+        camera: Coefficients of the camera basis, in standard deviations.
+        white_balance: Natural logarithm of the error in R/G and in B/G; zero is perfect.
+
+    Example:
+        >>> from skinnet.physics import SpectralCamera
+        >>> camera = SpectralCamera()
+        >>> warm = camera.standard()._replace(temperature=torch.tensor(5000.0))
+        >>> camera.matrix(warm).shape
+        torch.Size([33, 3])
     """
 
     light: Float[Tensor, "*batch lights"]
@@ -21,7 +30,12 @@ class Capture(NamedTuple):
     white_balance: Float[Tensor, "*batch 2"]
 
     def expand(self, batch: tuple[int, ...], dtype: torch.dtype) -> "Capture":
-        """The same capture for every photograph of a batch of that shape."""
+        """Repeat the capture for every photograph of a batch.
+
+        Args:
+            batch: Shape of the batch, to which the leading axes are broadcast.
+            dtype: Precision of the result.
+        """
         leading = self.temperature.ndim
         return Capture(
             *(value.to(dtype).expand((*batch, *value.shape[leading:])) for value in self)
@@ -31,7 +45,14 @@ class Capture(NamedTuple):
     def standard(
         lights: int, components: int, shape: tuple[int, ...] = (), like: Tensor | None = None
     ) -> "Capture":
-        """Daylight of 6,504 K (D65), the mean camera and a perfect white balance."""
+        """Return daylight of 6,504 K (D65), the mean camera and a perfect white balance.
+
+        Args:
+            lights: Number of lights in a mixture.
+            components: Number of components of the camera basis.
+            shape: Leading axes.
+            like: Tensor whose precision and device the capture has.
+        """
         like = torch.empty(()) if like is None else like
         light = like.new_zeros(*shape, lights)
         light[..., 0] = 1

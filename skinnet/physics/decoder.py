@@ -1,12 +1,13 @@
-"""The differentiable skin layer: pigment maps, shading and capture to linear sRGB."""
+"""The differentiable skin layer: pigment maps, shading and capture to linear sRGB (equation 4)."""
 
 import torch
 from jaxtyping import Float
 from torch import Tensor, nn
 
 from skinnet.errors import InputError
+from skinnet.physics._linear_algebra import apply_matrix
 from skinnet.physics._parameters import check_fraction
-from skinnet.physics.camera import SpectralCamera, apply_matrix
+from skinnet.physics.camera import SpectralCamera
 from skinnet.physics.capture import Capture
 from skinnet.physics.lookup import SkinLookup
 from skinnet.physics.optics import SkinOptics
@@ -14,14 +15,28 @@ from skinnet.physics.reflectance import SkinReflectance
 
 
 class SkinDecoder(nn.Module):
-    """Photograph of skin: image = shading * skin(f_mel, f_blood) + specular * white + offset.
+    """Photograph of skin: image = shading * albedo(f_mel, f_blood) + specular * white + offset.
 
-    The dichromatic image of model and residual (Alotaibi & Smith 2017, equations 4 and 11). `fast`
-    interpolates a colour table made for each image's light and camera; without it the closed form
-    is evaluated at 33 bands for every pixel. The two agree within 5e-4 in linear RGB.
+    The fast mode interpolates a colour table that is computed for each image's light and camera.
+    Otherwise the closed form is evaluated at 33 bands for every pixel. The two agree within 5e-4 in
+    linear RGB.
 
-    `optics` is a `SkinOptics` or a preset's name, `camera` a `SpectralCamera`; constants that are
-    parameters there are trained here.
+    Args:
+        optics: Constants of the skin, or the name of a preset. Parameters there are trained here.
+        camera: Lights and cameras; None: the measured ones. Parameters there are trained here.
+        fast: Whether to interpolate a table.
+        dtype: Precision of the constants; None: torch's default.
+
+    Source:
+        Equation 4 of Alotaibi & Smith 2017 is the albedo, the offset that of equation 11; the
+        dichromatic model adds shading and specular reflection.
+
+    Example:
+        >>> decoder = SkinDecoder()
+        >>> f_mel, f_blood = torch.full((2, 2), 0.03), torch.full((2, 2), 0.05)
+        >>> red, green, blue = decoder(f_mel, f_blood)[:, 0, 0].tolist()
+        >>> 1 > red > green > blue > 0
+        True
     """
 
     def __init__(
@@ -50,12 +65,21 @@ class SkinDecoder(nn.Module):
         offset: Float[Tensor, "*#batch 3 height width"] | None = None,
         capture: Capture | None = None,
     ) -> Float[Tensor, "*shape 3 height width"]:
-        """Linear sRGB, not clipped, of volume fractions in [0, 1].
+        """Render maps. Leading axes of maps and capture are broadcast.
 
-        `shading` (None: 1) and `specular` (None: 0) are relative to the light, `offset` (None: 0)
-        is in linear sRGB. Without a capture: D65, the mean camera, a perfect white balance.
-        Leading axes of maps and capture are broadcast. Raises `ValueError` for a fraction that is
-        not a number, negative, or above one.
+        Args:
+            f_mel: Melanosome volume fraction, in [0, 1].
+            f_blood: Blood volume fraction, in [0, 1].
+            shading: Diffuse shading relative to the light; None: 1.
+            specular: Specular reflection relative to the light; None: 0.
+            offset: Linear sRGB that is added; None: 0.
+            capture: Light and camera; None: D65, the mean camera, a perfect white balance.
+
+        Returns:
+            Linear sRGB, not clipped.
+
+        Raises:
+            InputError: For a fraction that is NaN, negative or above one, and for what is no map.
         """
         f_mel = check_fraction("f_mel", f_mel, like=self.camera.mean)
         f_blood = check_fraction("f_blood", f_blood, like=self.camera.mean)
@@ -83,22 +107,37 @@ class SkinDecoder(nn.Module):
         offset: Float[Tensor, "*batch 3 height width"] | None,
         capture: Capture,
     ) -> Float[Tensor, "*batch 3 height width"]:
-        """`forward` without its checks, for graphs that are trained or exported."""
+        """Render maps without checks or broadcasting, for graphs that are trained or exported.
+
+        Args:
+            f_mel: Melanosome volume fraction.
+            f_blood: Blood volume fraction.
+            shading: Diffuse shading relative to the light; None: 1.
+            specular: Specular reflection relative to the light; None: 0.
+            offset: Linear sRGB that is added; None: 0.
+            capture: Light and camera of each image.
+        """
         matrix = self.camera.matrix(capture).to(f_mel)
-        image = self.skin(f_mel, f_blood, matrix)
+        image = self.albedo(f_mel, f_blood, matrix)
         if shading is not None:
             image = image * shading[..., None, :, :]
         if specular is not None:
             image = image + specular[..., None, :, :] * matrix.sum(-2)[..., None, None]
         return image if offset is None else image + offset
 
-    def skin(
+    def albedo(
         self,
         f_mel: Float[Tensor, "*batch height width"],
         f_blood: Float[Tensor, "*batch height width"],
         matrix: Float[Tensor, "*batch wavelength 3"],
     ) -> Float[Tensor, "*batch 3 height width"]:
-        """Colour of the skin itself, the albedo, for each image's spectrum-to-RGB matrix."""
+        """Render the diffuse albedo: the colour of evenly lit skin (equation 4).
+
+        Args:
+            f_mel: Melanosome volume fraction.
+            f_blood: Blood volume fraction.
+            matrix: Spectrum-to-RGB matrix of each image.
+        """
         if not self.fast:
             return apply_matrix(self.reflectance.bands(f_mel, f_blood), matrix).movedim(-1, -3)
         batch, size = f_mel.shape[:-2], f_mel.shape[-2:]

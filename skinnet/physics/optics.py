@@ -10,7 +10,7 @@ from torch import Tensor
 
 from skinnet.errors import InputError
 from skinnet.physics._tables import read_table
-from skinnet.physics.dermis import kubelka_munk, kubelka_munk_printed
+from skinnet.physics.dermis import _kubelka_munk_printed, kubelka_munk
 from skinnet.physics.spectra import WAVELENGTHS
 
 Constant = float | int | Tensor
@@ -30,12 +30,44 @@ def _spectrum(name: str, column: str, unit: str, source: str) -> Any:
 class SkinOptics:
     """Constants of the two-layer skin model; the defaults are the `calibrated` preset.
 
-    Each field takes a float, a tensor, or an `nn.Parameter`, which makes it trainable in whatever
-    module is built on it. `SkinOptics.preset("paper", d_pd=0.1)` changes one of them. Field
-    metadata holds `unit`, `range` and `source`; a value outside its range is an `InputError`,
-    which is a `ValueError`.
+    Each constant is a float, a tensor, or an `nn.Parameter`, which makes it trainable in whatever
+    module is built on it. The metadata of its field holds `unit`, `range` and `source`.
 
-    Source: Alotaibi & Smith 2017, Tables 1 to 3, where nothing else is named.
+    Args:
+        c_eum: Eumelanin concentration, g/L (Table 1).
+        c_phm: Pheomelanin concentration, g/L (Table 1).
+        f_eum: Share of eumelanin in melanin, in [0, 1] (Table 1).
+        c_hem: Hemoglobin concentration of blood, g/L (Table 1).
+        g: Molar mass of hemoglobin, g/mol (Table 1).
+        f_oxy: Share of oxygenated hemoglobin, in [0, 1] (Table 1).
+        d_epd: Thickness of the epidermis, cm (Table 1).
+        d_pd: Thickness of the papillary dermis, cm (Table 1).
+        d_base: Path of the epidermis' baseline absorption, cm; None: `d_epd`. The print has none,
+            which is 1.
+        r_vessel: Radius of blood vessels, cm; 0: no pigment packaging, as in the paper.
+        blood_epd: Blood in the epidermis, as a fraction of f_blood; not in the paper.
+        base_floor: Constant of the baseline absorption, cm^-1 (Table 2).
+        base_scale: Factor of the baseline absorption's exponential, cm^-1 (Table 2).
+        mie: Factor of Mie scattering, cm^-1 nm^1.5 (Table 2).
+        rayleigh: Factor of Rayleigh scattering, cm^-1 nm^4 (Table 2).
+        eps_eum: Extinction of eumelanin [33], L g^-1 cm^-1. Measured, instead of Table 2, whose
+            values make every skin black.
+        eps_phm: Extinction of pheomelanin [33], L g^-1 cm^-1. Measured, instead of Table 2.
+        e_oxy: Molar extinction of oxyhemoglobin [33], cm^-1/(mol/L) (Table 3).
+        e_deoxy: Molar extinction of deoxyhemoglobin [33], cm^-1/(mol/L) (Table 3).
+        dermis: Reflectance of a layer of absorption k, scattering s and thickness d (section 3.3).
+
+    Raises:
+        InputError: For a value outside its range; it is a `ValueError`.
+
+    Source:
+        Tables 1 to 3 of Alotaibi & Smith 2017.
+
+    Example:
+        >>> SkinOptics.preset("paper", d_pd=0.1).d_pd
+        0.1
+        >>> next(item.metadata["unit"] for item in fields(SkinOptics) if item.name == "d_pd")
+        'cm'
     """
 
     c_eum: Constant = _constant(80.0, "g/L", 0.0, 1e3, "Thody et al. 1991")
@@ -79,9 +111,14 @@ class SkinOptics:
 
     @staticmethod
     def preset(name: str, **constants: Any) -> "SkinOptics":
-        """One of `PRESETS` by name, with some constants replaced.
+        """Return one of `PRESETS`, with some constants replaced.
 
-        Raises `ValueError` for an unknown preset or constant, or a value out of its range.
+        Args:
+            name: `calibrated`, `paper`, `authors` or `printed`.
+            constants: New values of constants, by name.
+
+        Raises:
+            InputError: For an unknown preset or constant, or a value out of its range.
         """
         if name not in PRESETS:
             raise InputError(f"There is no preset {name!r}; the presets are {', '.join(PRESETS)}.")
@@ -138,11 +175,14 @@ PRESETS: Mapping[str, SkinOptics] = MappingProxyType(
             eps_phm=_printed_extinction(2.9e10, -4.75),
             d_base=1.0,
             r_vessel=0.0,
-            dermis=kubelka_munk_printed,
+            dermis=_kubelka_munk_printed,
         ),
     }
 )
-"""`calibrated` (default): `paper` with blood in vessels of 20 um radius.
-`paper`: the paper's Tables 1 to 3 in consistent units.
-`authors`: the constants of the authors' later MATLAB release (github.com/ssma502/SkinModel).
-`printed`: the paper's text, literally; it makes every skin black and is kept for the record."""
+"""Constants by name: Tables 1 to 3 of Alotaibi & Smith 2017, read in four ways.
+
+- `calibrated` (default): `paper` with blood in vessels of 20 um radius.
+- `paper`: Tables 1 to 3 in consistent units.
+- `authors`: the constants of the authors' later MATLAB release (github.com/ssma502/SkinModel).
+- `printed`: the paper's text, literally. It makes every skin black and is kept for the record.
+"""

@@ -1,4 +1,4 @@
-"""Spectral reflectance of skin from two pigment fractions."""
+"""Spectral reflectance of skin from two pigment fractions (sections 3.2 to 3.5 of the paper)."""
 
 from dataclasses import fields
 
@@ -14,14 +14,28 @@ from skinnet.physics.spectra import WAVELENGTHS
 class SkinReflectance(nn.Module):
     """Two-layer skin: a Lambert-Beer epidermis over a Kubelka-Munk dermis.
 
-    R_total = T_epidermis(f_mel)^2 R_dermis(f_blood) at the 33 bands of `WAVELENGTHS`
-    (Alotaibi & Smith 2017, sections 3.2 to 3.4).
+    R_total = T_epidermis(f_mel)^2 R_dermis(f_blood) at the 33 bands of `WAVELENGTHS`.
 
-    `optics` is a `SkinOptics` or a preset's name. A constant that is an `nn.Parameter` there is a
-    parameter here; the others are buffers. Departures from the print, each with its reason: the
-    baseline absorption of the epidermis is multiplied by its thickness, as a dimensionless exponent
-    must be; the denominator of R_dermis is Kubelka-Munk's; blood is packed into vessels,
-    mu -> mu (1 - exp(-2 mu r)) / (2 mu r), without which two parameters do not explain skin.
+    The model departs from the print, for these reasons. The baseline absorption of the epidermis is
+    multiplied by its thickness, because an exponent has no dimension. The denominator of R_dermis
+    is Kubelka-Munk's; the printed one gives R = 1 without absorption. Blood is packed into vessels
+    of radius r, mu -> mu (1 - exp(-2 mu r)) / (2 mu r), without which two parameters do not explain
+    skin.
+
+    Args:
+        optics: Constants, or the name of a preset. One that is an `nn.Parameter` is a parameter
+            here; the others are buffers.
+        dtype: Precision of the buffers; None: torch's default.
+
+    Source:
+        Equations 2 and 3 of Alotaibi & Smith 2017, sections 3.2 to 3.5. Pigment packaging: Duysens
+        1956; van Veen et al. 2002.
+
+    Example:
+        >>> skin = SkinReflectance()
+        >>> pale, dark = skin(torch.tensor([0.02, 0.2]), 0.04)
+        >>> tuple(pale.shape), bool((dark < pale).all())
+        ((33,), True)
     """
 
     wavelengths: Tensor
@@ -58,9 +72,17 @@ class SkinReflectance(nn.Module):
     def forward(
         self, f_mel: Float[Tensor, "*#batch"] | float, f_blood: Float[Tensor, "*#batch"] | float
     ) -> Float[Tensor, "*batch wavelength"]:
-        """Reflectance [..., 33] of melanosome and blood volume fractions [...], each in [0, 1].
+        """Compute reflectance spectra (equation 3).
 
-        Raises `ValueError` for a fraction that is not a number, negative, or above one.
+        Args:
+            f_mel: Melanosome volume fraction of the epidermis, in [0, 1].
+            f_blood: Blood volume fraction of the dermis, in [0, 1].
+
+        Returns:
+            Reflectance in [0, 1] at the 33 bands, in the last axis.
+
+        Raises:
+            InputError: For a fraction that is NaN, negative or above one; it is a `ValueError`.
         """
         f_mel = check_fraction("f_mel", f_mel, like=self.wavelengths)
         f_blood = check_fraction("f_blood", f_blood, like=self.wavelengths)
@@ -69,57 +91,74 @@ class SkinReflectance(nn.Module):
     def bands(
         self, f_mel: Float[Tensor, "*#batch"], f_blood: Float[Tensor, "*#batch"]
     ) -> Float[Tensor, "*batch wavelength"]:
-        """`forward` without its checks, for graphs that are trained or exported."""
-        f_mel, f_blood = f_mel[..., None], f_blood[..., None]
-        return self.epidermis(f_mel, f_blood) ** 2 * self.dermis_reflectance(f_blood)
+        """Compute `forward` without its checks, for graphs that are trained or exported.
 
-    def epidermis(
+        R_total = T_epidermis^2 R_dermis, section 3.4 of the paper.
+
+        Args:
+            f_mel: Melanosome volume fraction.
+            f_blood: Blood volume fraction.
+        """
+        f_mel, f_blood = f_mel[..., None], f_blood[..., None]
+        return self.epidermis_transmittance(f_mel, f_blood) ** 2 * self.dermis_reflectance(f_blood)
+
+    def epidermis_transmittance(
         self, f_mel: Float[Tensor, "*#batch 1"], f_blood: Float[Tensor, "*#batch 1"]
     ) -> Float[Tensor, "*batch wavelength"]:
-        """Transmittance of the epidermis in one direction (equation 2).
+        """Compute the transmittance of the epidermis in one direction (equation 2).
 
-        The third absorber, blood, is there in the authors' release only, which weights each
-        hemoglobin by its share of the total twice.
+        Only the authors' release has blood in the epidermis, and weights each hemoglobin by its
+        share of the total twice.
+
+        Args:
+            f_mel: Melanosome volume fraction.
+            f_blood: Blood volume fraction.
         """
         d_base = self.d_epd if self.d_base is None else self.d_base
         f_hem = self.blood_epd * f_blood
-        twice = self.f_oxy**2 * self._mu(self.e_oxy) + (1 - self.f_oxy) ** 2 * self._mu(
+        doubly_weighted = self.f_oxy**2 * self._mu(self.e_oxy) + (1 - self.f_oxy) ** 2 * self._mu(
             self.e_deoxy
         )
         melanin = f_mel * self.d_epd * self.mu_mel
-        return torch.exp(-melanin - d_base * (f_hem * twice + (1 - f_mel - f_hem) * self.mu_base))
+        return torch.exp(
+            -melanin - d_base * (f_hem * doubly_weighted + (1 - f_mel - f_hem) * self.mu_base)
+        )
 
     def dermis_reflectance(
         self, f_blood: Float[Tensor, "*batch 1"]
     ) -> Float[Tensor, "*batch wavelength"]:
-        """Reflectance of the papillary dermis over a black substrate (section 3.3)."""
+        """Compute the reflectance of the papillary dermis over a black substrate (section 3.3).
+
+        Args:
+            f_blood: Blood volume fraction.
+        """
         k = f_blood * self.mu_blood + (1 - f_blood) * self.mu_base
         s = self.mie * self.wavelengths**-1.5 + self.rayleigh * self.wavelengths**-4.0
         return self.dermis(k, s, self.d_pd)
 
     @property
     def mu_mel(self) -> Float[Tensor, "wavelength"]:
-        """Absorption of a melanosome's interior, cm^-1."""
+        """Absorption of a melanosome's interior, cm^-1 (section 3.2)."""
         eumelanin = self.f_eum * self.eps_eum * self.c_eum
         return eumelanin + (1 - self.f_eum) * self.eps_phm * self.c_phm
 
     @property
     def mu_base(self) -> Float[Tensor, "wavelength"]:
-        """Absorption of skin without pigment, cm^-1 (Jacques 1998)."""
+        """Absorption of skin without pigment, cm^-1 (Table 2; Jacques 1998)."""
         return self.base_floor + self.base_scale * torch.exp(-(self.wavelengths - 154) / 66.2)
 
     @property
     def mu_blood(self) -> Float[Tensor, "wavelength"]:
-        """Absorption of whole blood in vessels of radius `r_vessel`, cm^-1."""
+        """Absorption of whole blood in vessels of radius `r_vessel`, cm^-1 (section 3.3)."""
         mu = self.f_oxy * self._mu(self.e_oxy) + (1 - self.f_oxy) * self._mu(self.e_deoxy)
-        return mu * packing(2 * mu * self.r_vessel)
+        return mu * _pigment_packaging(2 * mu * self.r_vessel)
 
     def _mu(self, extinction: Float[Tensor, "wavelength"]) -> Float[Tensor, "wavelength"]:
         return 2.303 * extinction * self.c_hem / self.g
 
 
-def packing(x: Float[Tensor, "*shape"]) -> Float[Tensor, "*shape"]:
-    """(1 - exp(-x)) / x for x >= 0, smooth at zero, where it is 1 (van Veen et al. 2002)."""
+def _pigment_packaging(x: Float[Tensor, "*shape"]) -> Float[Tensor, "*shape"]:
+    """Return (1 - exp(-x)) / x for x >= 0, smooth at zero, where it is 1 (van Veen et al. 2002)."""
     small = x < 1e-4
     safe = torch.where(small, torch.ones_like(x), x)
     return torch.where(small, 1 - x / 2 + x**2 / 6, -torch.expm1(-safe) / safe)

@@ -1,4 +1,4 @@
-"""Lights and cameras by name, or measured and handed in as CSV."""
+"""Light and camera sources: by name, or measured and read from a CSV file."""
 
 import csv
 import difflib
@@ -17,77 +17,126 @@ from skinnet.physics.camera import spectrum_to_srgb
 from skinnet.physics.illuminants import daylight
 from skinnet.physics.spectra import WAVELENGTHS, load_cameras, load_observer
 
-MEAN = "mean"
+_MEAN = "mean"
 """Name of the mean of the measured cameras."""
 
-DAYLIGHT = re.compile(r"[dD](\d{2}|\d{4,5}\s*[kK]?)$")
-TEMPERATURES = (4000.0, 25000.0)
+_DAYLIGHT = re.compile(r"[dD](\d{2}|\d{4,5}\s*[kK]?)$")
+_TEMPERATURES = (4000.0, 25000.0)
 
 
 def load_light(name: str) -> Float[Tensor, "wavelength"]:
-    """Relative power of a light [33], of unit sum, float64.
+    """Load the relative power of a light at the 33 bands.
 
-    `name` is D65, D50 or another daylight (D5500K), a CIE illuminant of `skinnet.physics`, or a
-    .csv file of wavelength in nm and power. Raises `InputError` for an unknown name, with those
-    that are near it, and for a file that does not hold a spectrum.
+    Args:
+        name: D65, D50 or another daylight (D5500K), a CIE illuminant of `LIGHTS`, or the path of a
+            .csv file of wavelength in nm and power.
+
+    Returns:
+        Power of unit sum, float64.
+
+    Raises:
+        InputError: For an unknown name, with the names closest to it, and for a file that does not
+            hold a spectrum.
+
+    Source:
+        CIE 015:2018; e of section 3.5 of Alotaibi & Smith 2017.
+
+    Example:
+        >>> light = load_light("D65")
+        >>> tuple(light.shape), round(light.sum().item(), 6)
+        ((33,), 1.0)
     """
     if name.lower().endswith(".csv"):
-        power = _spectra(Path(name), 1)[:, 0]
+        power = _read_spectra(Path(name), 1)[:, 0]
         return power / power.sum()
-    if (day := DAYLIGHT.match(name)) is not None:
-        return _daylight(name, day.group(1))
-    power = _named(name, read_table("illuminants"), "light", "D65 or another daylight, or ")
+    if (day := _DAYLIGHT.match(name)) is not None:
+        return _load_daylight(name, day.group(1))
+    power = _find(name, read_table("illuminants"), "light", "D65 or another daylight, or ")
     return power / power.sum()
 
 
 def load_camera(name: str) -> Float[Tensor, "wavelength 3"]:
-    """Sensitivities of a camera [33, 3], R, G, B, each of unit sum, float64.
+    """Load the sensitivities of a camera at the 33 bands.
 
-    `name` is one of the 52 measured cameras, `mean`, or a .csv file of wavelength in nm and three
-    sensitivities. Raises `InputError` as `load_light` does.
+    Args:
+        name: One of the 52 measured cameras in any case, `mean`, or the path of a .csv file of
+            wavelength in nm and three sensitivities.
+
+    Returns:
+        Sensitivities of R, G and B, each of unit sum, float64.
+
+    Raises:
+        InputError: For an unknown name, with the names closest to it, and for a file that does not
+            hold spectra.
+
+    Source:
+        S of section 3.5 of Alotaibi & Smith 2017, who used the Nikon D200.
+
+    Example:
+        >>> tuple(load_camera("nikon d200").shape)
+        (33, 3)
     """
     if name.lower().endswith(".csv"):
-        curves = _spectra(Path(name), 3)
+        curves = _read_spectra(Path(name), 3)
         return curves / curves.sum(0)
     measured = load_cameras()
-    if name.lower() == MEAN:
+    if name.lower() == _MEAN:
         return torch.stack(list(measured.values())).mean(0)
-    return _named(name, measured, "camera", f"{MEAN}, or ")
+    return _find(name, measured, "camera", f"{_MEAN}, or ")
 
 
-def load_spectrum_to_srgb(light_name: str, camera_name: str) -> Float[Tensor, "wavelength 3"]:
-    """The map from a spectrum [33] to white-balanced linear sRGB under a light and a camera."""
-    return spectrum_to_srgb(load_light(light_name), load_camera(camera_name), load_observer())
+def load_spectrum_to_srgb(light: str, camera: str) -> Float[Tensor, "wavelength 3"]:
+    """Load the matrix from a spectrum to white-balanced linear sRGB under a light and a camera.
+
+    Args:
+        light: Name or file, as of `load_light`.
+        camera: Name or file, as of `load_camera`.
+
+    Returns:
+        The matrix; a spectrum times it is linear sRGB. float64.
+
+    Raises:
+        InputError: As `load_light` and `load_camera`.
+
+    Source:
+        Equation 4 of Alotaibi & Smith 2017; see `spectrum_to_srgb`.
+
+    Example:
+        >>> matrix = load_spectrum_to_srgb("LED-B3", "Nikon D200")
+        >>> [round(value, 6) for value in matrix.sum(0).tolist()]  # white
+        [1.0, 1.0, 1.0]
+    """
+    return spectrum_to_srgb(load_light(light), load_camera(camera), load_observer())
 
 
-def _named(
+def _find(
     name: str, known: Mapping[str, Tensor], kind: str, others: str
 ) -> Float[Tensor, "wavelength *channels"]:
     folded = {each.casefold(): each for each in known}
     if name.casefold() in folded:
         return known[folded[name.casefold()]]
-    near = difflib.get_close_matches(name.casefold(), folded, 3, 0.4)
-    shown = [folded[each] for each in near] or sorted(known)[:5]
+    close = difflib.get_close_matches(name.casefold(), folded, 3, 0.4)
+    listed = [folded[each] for each in close] or sorted(known)[:5]
     raise InputError(
-        f"There is no {kind} {name!r}; known are {others}{', '.join(shown)} and others, or give a "
+        f"There is no {kind} {name!r}; known are {others}{', '.join(listed)} and others, or give a "
         ".csv file."
     )
 
 
-def _daylight(name: str, number: str) -> Float[Tensor, "wavelength"]:
+def _load_daylight(name: str, number: str) -> Float[Tensor, "wavelength"]:
     digits = float(number.rstrip("kK "))
     # CIE's two-digit names are older than today's value of c2 in Planck's law.
     kelvin = 100 * digits * 1.4388 / 1.438 if digits < 100 else digits
-    if not TEMPERATURES[0] <= kelvin <= TEMPERATURES[1]:
+    if not _TEMPERATURES[0] <= kelvin <= _TEMPERATURES[1]:
         raise InputError(
-            f"Daylight has {TEMPERATURES[0]:g} to {TEMPERATURES[1]:g} K; got {name!r}."
+            f"Daylight has {_TEMPERATURES[0]:g} to {_TEMPERATURES[1]:g} K; got {name!r}."
         )
     return daylight(torch.tensor(kelvin, dtype=torch.float64))
 
 
-def _spectra(path: Path, columns: int) -> Float[Tensor, "wavelength columns"]:
-    """Columns of a CSV at the 33 bands, interpolated linearly."""
-    rows = _numbers(path, columns)
+def _read_spectra(path: Path, columns: int) -> Float[Tensor, "wavelength columns"]:
+    """Read the columns of a CSV at the 33 bands, interpolated linearly."""
+    rows = _read_numbers(path, columns)
     order = np.argsort(rows[:, 0], kind="stable")
     wavelength, values = rows[order, 0], rows[order, 1:]
     low, high = float(WAVELENGTHS[0]), float(WAVELENGTHS[-1])
@@ -105,7 +154,7 @@ def _spectra(path: Path, columns: int) -> Float[Tensor, "wavelength columns"]:
     return torch.from_numpy(curves)
 
 
-def _numbers(path: Path, columns: int) -> Float[np.ndarray, "rows columns"]:
+def _read_numbers(path: Path, columns: int) -> Float[np.ndarray, "rows columns"]:
     try:
         text = path.read_text(encoding="utf-8-sig")
     except (OSError, UnicodeDecodeError) as error:

@@ -9,7 +9,18 @@ from skinnet.physics._linear_algebra import invert_3x3
 
 
 def srgb_to_xyz() -> Float[Tensor, "3 3"]:
-    """Linear sRGB to XYZ from the primaries and the D65 white of IEC 61966-2-1."""
+    """Compute the matrix from linear sRGB to XYZ.
+
+    Returns:
+        The matrix from the primaries and the D65 white, not rounded, float64.
+
+    Source:
+        IEC 61966-2-1.
+
+    Example:
+        >>> [round(value, 4) for value in srgb_to_xyz().sum(1).tolist()]  # XYZ of white
+        [0.9505, 1.0, 1.0891]
+    """
     primaries = torch.tensor([[0.64, 0.33], [0.30, 0.60], [0.15, 0.06]], dtype=torch.float64)
     white = torch.tensor([0.3127, 0.3290], dtype=torch.float64)
     xyz = _chromaticity_to_xyz(primaries).mT
@@ -39,7 +50,6 @@ def luminance(
         IEC 61966-2-1, the second row of the matrix from linear sRGB to XYZ.
 
     Example:
-        >>> import torch
         >>> green = torch.tensor([0.0, 1.0, 0.0])[:, None, None]
         >>> round(luminance(green).item(), 4)
         0.7152
@@ -51,6 +61,20 @@ def luminance(
 def to_display(
     linear: Float[Tensor, "*batch 3 height width"],
 ) -> Float[Tensor, "*batch 3 height width"]:
-    """Display sRGB in [0, 1] of linear sRGB, clipped to the gamut."""
+    """Encode linear sRGB for display, with sRGB's transfer curve.
+
+    Args:
+        linear: Linear sRGB; values outside [0, 1] are clipped.
+
+    Returns:
+        Display sRGB in [0, 1].
+
+    Source:
+        IEC 61966-2-1.
+
+    Example:
+        >>> round(to_display(torch.full((3, 1, 1), 0.18)).mean().item(), 4)
+        0.4614
+    """
     display: Tensor = linear_rgb_to_rgb(linear.clamp(0, 1))
     return display

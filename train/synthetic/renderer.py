@@ -63,7 +63,7 @@ def render(lot: dict[str, Tensor], decoder: SkinDecoder, split: str = "train") -
     melanin, hemoglobin = over.melanin[:, 0], over.hemoglobin[:, 0]
     other = _other(lot, ground, over) * torch.where(ground.label > 0, lit.diffuse, 1.0)
     other = (other + lit.specular * (ground.label > 0)) * white
-    albedo = decoder.skin(melanin, hemoglobin, matrix)
+    albedo = decoder.albedo(melanin, hemoglobin, matrix)
     face = Skin(melanin, hemoglobin, albedo, share, lit)
     return developed(lot, face, (1 - share) * other, white, capture)
 

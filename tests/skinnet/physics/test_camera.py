@@ -14,7 +14,7 @@ with warnings.catch_warnings():
     warnings.simplefilter("ignore")
     import colour
 
-from skinnet.physics.camera import LIGHTS, SpectralCamera, apply_matrix, spectrum_to_srgb
+from skinnet.physics.camera import LIGHTS, SpectralCamera, spectrum_to_srgb
 from skinnet.physics.capture import Capture
 from skinnet.physics.spectra import load_cameras, load_observer
 from tests import oracle
@@ -177,16 +177,6 @@ def test_components_explain_what_they_say() -> None:
     coefficients = torch.linalg.lstsq(basis.T, (curves - camera.mean.flatten()).T).solution
     assert coefficients.std(dim=1) == pytest.approx(1, abs=1e-6)
     assert (basis.T @ coefficients).T + camera.mean.flatten() == pytest.approx(curves, abs=1e-6)
-
-
-@given(st.lists(st.integers(1, 3), max_size=2), st.lists(st.integers(1, 3), max_size=3))
-def test_one_matrix_for_each_of_the_batch(batch: list[int], others: list[int]) -> None:
-    generator = torch.Generator().manual_seed(0)
-    matrix = torch.rand(*batch, 33, 3, generator=generator)
-    reflectance = torch.rand(*batch, *others, 33, generator=generator)
-    spread = matrix.reshape(*batch, *[1] * len(others), 33, 3)
-    expected = (reflectance[..., None] * spread).sum(-2)
-    assert torch.allclose(apply_matrix(reflectance, matrix), expected, atol=1e-5)
 
 
 def test_batch_and_dtype_do_not_matter(random_capture: Callable[..., Capture]) -> None:

@@ -9,7 +9,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from skinnet.physics.optics import PRESETS, SkinOptics
-from skinnet.physics.reflectance import SkinReflectance
+from skinnet.physics.reflectance import SkinReflectance, _pigment_packaging
 from tests import oracle
 
 UNIT = np.linspace(0, 1, 33)
@@ -140,3 +140,26 @@ def test_constants_keep_all_digits_in_float64() -> None:
     exact = oracle.reflectance("calibrated", 0.1, 0.05)
     actual = SkinReflectance(dtype=torch.float64)(0.1, 0.05)
     assert actual.numpy() == pytest.approx(exact, abs=1e-12)
+
+
+def tensor(value: float) -> torch.Tensor:
+    return torch.tensor([value], dtype=torch.float64)
+
+
+@pytest.mark.parametrize("x", [0.0, 5e-5, 2e-4, 1.0, 50.0])
+def test_pigment_packaging_has_its_value_and_slopes(x: float) -> None:
+    expected = 1.0 if x == 0 else -np.expm1(-x) / x
+    assert _pigment_packaging(tensor(x)).item() == pytest.approx(expected, abs=1e-13)
+    assert torch.autograd.gradcheck(_pigment_packaging, tensor(x).requires_grad_())
+    assert torch.autograd.gradgradcheck(_pigment_packaging, tensor(x).requires_grad_())
+
+
+def test_pigment_packaging_slopes_by_minus_one_half_at_zero() -> None:
+    x = tensor(0.0).requires_grad_()
+    (slope,) = torch.autograd.grad(_pigment_packaging(x).sum(), x)
+    assert slope.item() == pytest.approx(-0.5)
+
+
+def test_the_series_of_pigment_packaging_joins_the_closed_form() -> None:
+    below, above = (_pigment_packaging(tensor(1e-4 * (1 + sign * 1e-9))) for sign in (-1, 1))
+    assert (below - above).abs().item() < 1e-12

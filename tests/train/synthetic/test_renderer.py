@@ -74,7 +74,7 @@ def test_a_capture_is_close_to_the_measured_camera(
     matrix, capture = camera.pictured(lot, data.decoder.camera, "train")
     f_mel, f_blood = (lot[name][:, None, None] for name in ("f_mel", "f_blood"))
     measured, said = (
-        data.decoder.skin(f_mel, f_blood, one)
+        data.decoder.albedo(f_mel, f_blood, one)
         for one in (matrix, data.decoder.camera.matrix(capture))
     )
     assert (measured / said).log().abs().max() < 0.15
@@ -106,7 +106,7 @@ def test_albedo_is_the_colour_of_the_skin(made: Made, lot: Lot, data: SyntheticF
     batch = made(flip=0.0)
     matrix, _ = camera.pictured(lot, data.decoder.camera, "train")
     assert batch.truth is not None and batch.albedo is not None
-    again = data.decoder.skin(batch.truth.melanin, batch.truth.hemoglobin, matrix)
+    again = data.decoder.albedo(batch.truth.melanin, batch.truth.hemoglobin, matrix)
     assert torch.equal(again, batch.albedo)
 
 
