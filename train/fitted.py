@@ -24,7 +24,7 @@ from skinnet.render.scene import Scene
 from skinnet.render.views import frame_face
 from skinnet.render.visibility import trace_geometry
 from train.batch import Batch
-from train.stream import StreamLoader, seen_samples
+from train.stream import StreamLoader, count_seen_samples
 from train.synthetic.faces import Drawn
 from train.synthetic.head_cache import SPLITS
 from train.synthetic.head_cast import facing
@@ -154,7 +154,7 @@ class FittedFaces(LightningDataModule):
 
     def train_dataloader(self) -> StreamLoader:
         samples = self.samples["train"]
-        seen = partial(seen_samples, self.trainer, self.batch_size)
+        seen = partial(count_seen_samples, self.trainer, self.batch_size)
         return StreamLoader(FittedLots(self, "train", samples), self.batch_size, samples, seen)
 
     def val_dataloader(self) -> DataLoader[Drawn]:

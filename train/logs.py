@@ -1,4 +1,4 @@
-"""Loss curves as one growing CSV file."""
+"""Writes loss curves to one growing CSV file."""
 
 import csv
 from pathlib import Path
@@ -12,22 +12,27 @@ class CurveLogger(Logger):
     """Appends a line `step,metric,value` to `metrics.csv` for every number logged.
 
     Lightning's own CSVLogger deletes the file when a run is resumed.
+
+    Args:
+        folder: The run's.
     """
 
-    def __init__(self, folder: str):
+    def __init__(self, folder: str) -> None:
         super().__init__()
         self.path = Path(folder) / "metrics.csv"
 
     @property
     def name(self) -> str:
+        """Return a name, which Lightning asks for."""
         return "curves"
 
     @property
     def version(self) -> str:
+        """Return no version; a run has a folder of its own."""
         return ""
 
     def log_hyperparams(self, *args: Any, **kwargs: Any) -> None:
-        """The configuration is saved as config.yaml."""
+        """Log nothing; the configuration is saved as config.yaml."""
 
     @rank_zero_only
     def log_metrics(self, metrics: dict[str, float], step: int | None = None) -> None:

@@ -29,7 +29,7 @@ from skinnet.images import (
 )
 from train.batch import Batch
 from train.guards import list_names
-from train.stream import StreamLoader, seen_samples
+from train.stream import StreamLoader, count_seen_samples
 from train.synthetic.faces import Drawn, SyntheticFaces
 
 SUFFIXES = (".jpg", ".jpeg", ".png", ".tif", ".tiff", ".webp")
@@ -170,7 +170,7 @@ class Portraits(LightningDataModule):
         """Make the endless loader of photographs and synthetic faces."""
         crops = Crops(self.crops["train"], self.seed)
         steps = max(len(crops) // self.batch_size, 1)
-        seen = partial(seen_samples, self.trainer, self.batch_size)
+        seen = partial(count_seen_samples, self.trainer, self.batch_size)
         loaders = {
             "portraits": StreamLoader(crops, self.batch_size, steps * self.batch_size, seen),
             "synthetic": self.synthetic.stream(steps, self.trainer),

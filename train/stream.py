@@ -1,4 +1,4 @@
-"""Data in an order that depends on how much was seen, so that resuming goes on exactly."""
+"""Data in an order that depends on how much was seen, so that resumed runs continue exactly."""
 
 from collections.abc import Callable, Iterator
 from typing import Any
@@ -12,21 +12,23 @@ from skinnet.errors import InputError
 
 
 class StreamSampler(DistributedSampler[int]):
-    """Places in an endless stream: from the first not yet seen to the end of its epoch.
+    """Indices of an endless stream: from the first not yet seen to the end of its epoch.
 
-    `seen` says how many samples this process has seen over all epochs. It is asked whenever an
-    epoch starts, after a resume too, where Lightning itself would start the epoch's data again.
+    Lightning would start the data of an epoch again after a resume; this sampler continues it.
     Processes that train together take turns, so that each step sees the samples that one process
-    would see in it; Lightning leaves a `DistributedSampler` as it is.
+    would see in it. Lightning does not replace a `DistributedSampler`.
 
     Args:
-        epoch: samples of an epoch over all processes, a multiple of their number.
-        seen: see above.
-        replicas: processes that train together.
-        rank: which of them this is.
+        epoch: Samples of an epoch over all processes, a multiple of their number.
+        seen: Returns how many samples this process has seen over all epochs. It is called whenever
+            an epoch starts.
+        replicas: Number of processes that train together.
+        rank: Number of this process.
     """
 
-    def __init__(self, epoch: int, seen: Callable[[], int], replicas: int = 1, rank: int = 0):
+    def __init__(
+        self, epoch: int, seen: Callable[[], int], replicas: int = 1, rank: int = 0
+    ) -> None:
         super().__init__(range(epoch), replicas, rank, shuffle=False)  # type: ignore[arg-type]
         self.seen = seen
 
@@ -37,9 +39,16 @@ class StreamSampler(DistributedSampler[int]):
 
 
 class StreamLoader(DataLoader[Any]):
-    """A loader over a `StreamSampler`, `batch_size` samples a step in every process.
+    """A loader over a `StreamSampler`.
 
-    It has a state, an empty one, which is how Lightning is told that it can be resumed.
+    Lightning resumes loaders that have a state, so it has an empty one.
+
+    Args:
+        dataset: The samples by index.
+        batch_size: Samples of a step in every process.
+        samples: Samples of an epoch, rounded down to whole steps.
+        seen: As in `StreamSampler`.
+        workers: Processes that load samples.
     """
 
     def __init__(
@@ -49,24 +58,26 @@ class StreamLoader(DataLoader[Any]):
         samples: int,
         seen: Callable[[], int],
         workers: int = 0,
-    ):
-        replicas, rank = processes()
+    ) -> None:
+        replicas, rank = _get_processes()
         step = batch_size * replicas
         sampler = StreamSampler(max(samples // step, 1) * step, seen, replicas, rank)
         super().__init__(dataset, batch_size, sampler=sampler, num_workers=workers)
 
     def state_dict(self) -> dict[str, Any]:
+        """Return an empty state."""
         return {}
 
     def load_state_dict(self, state: dict[str, Any]) -> None:
-        pass
+        """Ignore the state; the sampler knows what was seen."""
 
 
-def seen_samples(trainer: Trainer | None, batch_size: int) -> int:
-    """Samples that this process has trained on, over all epochs and interruptions.
+def count_seen_samples(trainer: Trainer | None, batch_size: int) -> int:
+    """Count the samples that this process has trained on, over all epochs and interruptions.
 
-    Raises `InputError` where gradients are accumulated: an epoch's last step may then be of fewer
-    batches, and what was seen does not follow from the steps.
+    Raises:
+        InputError: if gradients are accumulated. The last step of an epoch may then have fewer
+            batches, so that the samples do not follow from the steps.
     """
     if trainer is None:
         return 0
@@ -78,8 +89,8 @@ def seen_samples(trainer: Trainer | None, batch_size: int) -> int:
     return int(trainer.global_step * batch_size)
 
 
-def processes() -> tuple[int, int]:
-    """How many processes train together, and which of them this is."""
+def _get_processes() -> tuple[int, int]:
+    """The number of processes that train together, and the number of this one."""
     if not (distributed.is_available() and distributed.is_initialized()):
         return 1, 0
     return distributed.get_world_size(), distributed.get_rank()

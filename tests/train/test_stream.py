@@ -6,7 +6,7 @@ import pytest
 from lightning import Trainer
 
 from skinnet.errors import InputError
-from train.stream import StreamLoader, StreamSampler, seen_samples
+from train.stream import StreamLoader, StreamSampler, count_seen_samples
 
 
 def test_an_epoch_starts_at_what_was_seen_and_ends_where_it_would_have_ended() -> None:
@@ -29,7 +29,7 @@ def test_a_loader_has_whole_batches_only() -> None:
 
 def test_accumulated_gradients_are_refused() -> None:
     quiet = {"logger": False, "enable_checkpointing": False, "enable_progress_bar": False}
-    assert seen_samples(Trainer(accelerator="cpu", **quiet), 8) == 0
+    assert count_seen_samples(Trainer(accelerator="cpu", **quiet), 8) == 0
     trainer = Trainer(accelerator="cpu", accumulate_grad_batches=3, **quiet)
     with pytest.raises(InputError, match="accumulate_grad_batches is 3"):
-        seen_samples(trainer, 8)
+        count_seen_samples(trainer, 8)

@@ -2,7 +2,9 @@
 
 from collections.abc import Callable
 
+import pytest
 import torch
+from torch.optim.lr_scheduler import CosineAnnealingLR, LinearLR, LRScheduler, SequentialLR
 
 from train.batch import Batch
 from train.task import LossWeights, SkinTask, compute_losses, warm_up_and_anneal
@@ -41,6 +43,21 @@ def test_photographs_without_truth_have_no_supervised_losses(batch: Make) -> Non
     assert known.isdisjoint(found)
 
 
-def test_the_learning_rate_rises_and_falls_to_zero() -> None:
-    rates = [warm_up_and_anneal(step, 10, 100) for step in range(101)]
-    assert max(rates) == 1.0 and rates[0] < 0.2 and rates[-1] == 0.0
+def test_the_learning_rate_is_that_of_torch_s_schedulers() -> None:
+    warmup, steps = 10, 100
+    optimizer = torch.optim.SGD([torch.zeros(1, requires_grad=True)], lr=1.0)
+    parts: list[LRScheduler] = [
+        LinearLR(optimizer, 1 / (warmup + 1), total_iters=warmup),
+        CosineAnnealingLR(optimizer, steps - warmup),
+    ]
+    schedule = SequentialLR(optimizer, parts, [warmup])
+    for step in range(steps + 1):
+        (rate,) = schedule.get_last_lr()
+        assert warm_up_and_anneal(step, warmup, steps) == pytest.approx(rate, abs=1e-12)
+        optimizer.step()
+        schedule.step()
+
+
+def test_the_learning_rate_stays_zero_after_the_last_step() -> None:
+    assert warm_up_and_anneal(100, 10, 100) == warm_up_and_anneal(120, 10, 100) == 0
+    assert warm_up_and_anneal(0, 0, 100) == 1

@@ -13,7 +13,7 @@ from torch.utils.data import DataLoader, Dataset
 
 from skinnet.physics import SkinDecoder
 from train.batch import Batch
-from train.stream import StreamLoader, seen_samples
+from train.stream import StreamLoader, count_seen_samples
 from train.synthetic.head_cache import SPLITS, geometry
 from train.synthetic.head_cast import Buffers
 from train.synthetic.model_skins import Skins, draw_skin, load_skins
@@ -145,7 +145,7 @@ class SyntheticFaces(LightningDataModule):
         """Training pictures in epochs of that many steps, from where the trainer stands."""
         samples = max(steps, 1) * self.batch_size
         lots = Lots(self.buffers["train"], "train", samples, self.seed, self.skins, wide=True)
-        seen = partial(seen_samples, trainer, self.batch_size)
+        seen = partial(count_seen_samples, trainer, self.batch_size)
         return StreamLoader(lots, self.batch_size, samples, seen, self.workers)
 
     def val_dataloader(self) -> DataLoader[Drawn]:
