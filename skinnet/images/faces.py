@@ -87,7 +87,7 @@ def frame_head(face: Box, width: int, height: int, margin: float = 2.0) -> Box:
 def _detect(
     small: NDArray[np.uint8], smallest: float, step: float, agreeing: int
 ) -> list[dict[str, int]]:
-    """Detect squares (r, c, width, height) that look like faces, at least `smallest` pixels wide."""
+    """Detect squares (r, c, width, height) that look like faces, `smallest` pixels wide or more."""
     least, most = max(24, round(smallest)), min(small.shape[:2])
     if most < least:
         return []

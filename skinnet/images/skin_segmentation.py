@@ -85,7 +85,7 @@ def _segment(crop: NDArray[np.uint8], face: _Rectangle) -> NDArray[np.float32]:
 
 
 def _features(linear: NDArray[Any]) -> NDArray[Any]:
-    """log R/G, log B/G and log luminance of linear sRGB."""
+    """Log R/G, log B/G and log luminance of linear sRGB."""
     red, green, blue = np.moveaxis(np.log(linear), -1, 0)
     return np.stack([red - green, blue - green, np.log(linear @ LUMINANCE_WEIGHTS)], -1)
 

@@ -60,7 +60,7 @@ class OnnxModel:
         >>> encoder = open_model(SHIPPED_ENCODER, "encoder", threads=1)
         >>> maps = encoder.run({"image": np.full((1, 64, 48, 3), 180, np.uint8)})
         >>> maps["melanin"].shape, encoder.output_info["melanin"].unit
-        ((1, 64, 48), 'melanosome volume fraction')
+        ((1, 64, 48), 'volume fraction')
     """
 
     path: Path

@@ -1,4 +1,4 @@
-"""The files of one decomposed photograph, which appear together or not at all."""
+"""The files of one decomposed photograph, which are written together or not at all."""
 
 import json
 from pathlib import Path
@@ -14,8 +14,8 @@ from skinnet.images.photograph import write_png
 from skinnet.inference.decomposition import Decomposition
 from skinnet.inference.panel import draw_panel
 
-PICTURES = (".png", ".jpg", ".jpeg")
-"""Suffixes under which an edited photograph is written."""
+_PICTURE_SUFFIXES = (".png", ".jpg", ".jpeg")
+"""Suffixes with which an edited photograph is written."""
 
 _LEVELS = 65535
 
@@ -27,21 +27,43 @@ def write_results(
     decomposition: Decomposition,
     summary: dict[str, Any],
 ) -> int:
-    """Write panel, maps, reconstruction and summary into `folder`, made if needed; count them.
+    """Write the panel, all maps, the reconstruction and the summary of a photograph.
 
-    Files are named STEM_melanin.png and so on, and STEM.json. Raises `InputError` if the folder
-    cannot be written.
+    Maps are 16-bit PNG files in which value = scale * pixel + offset; their tEXt chunks hold
+    `scale`, `offset` and `unit`.
+
+    Args:
+        folder: where to write; it is made if it does not exist.
+        stem: how the files' names begin: STEM_panel.png, STEM_melanin.png, ..., STEM.json.
+        photo: the photograph, uint8 sRGB [H, W, 3].
+        decomposition: its decomposition.
+        summary: what to write as JSON, usually `decomposition.summary()`.
+
+    Returns:
+        The number of files.
+
+    Raises:
+        InputError: the folder cannot be written.
+
+    Example:
+        >>> from tempfile import mkdtemp
+        >>> from skimage.data import astronaut
+        >>> from skinnet import Decomposer
+        >>> found = Decomposer()(astronaut(), detail=False)
+        >>> write_results(Path(mkdtemp()), "astronaut", astronaut(), found, found.summary())
+        11
     """
     try:
         folder.mkdir(parents=True, exist_ok=True)
-        with write_together() as beside:
-            write_png(beside(folder / f"{stem}_panel.png"), draw_panel(photo, decomposition))
-            picture = decomposition.reconstruction
-            write_png(beside(folder / f"{stem}_reconstruction.png"), picture)
+        with write_together() as temporary:
+            panel = draw_panel(photo, decomposition)
+            write_png(temporary(folder / f"{stem}_panel.png"), panel)
+            reconstruction = temporary(folder / f"{stem}_reconstruction.png")
+            write_png(reconstruction, decomposition.reconstruction)
             for name, values in decomposition.maps().items():
-                _write_map(beside(folder / f"{stem}_{name}.png"), name, values, decomposition)
+                _write_map(temporary(folder / f"{stem}_{name}.png"), name, values, decomposition)
             text = json.dumps(summary, indent=2, allow_nan=False)
-            write_text(beside(folder / f"{stem}.json"), text + "\n")
+            write_text(temporary(folder / f"{stem}.json"), text + "\n")
     except OSError as error:
         raise InputError(
             f"{folder} cannot be written ({error.strerror}); choose another folder with -o."
@@ -50,10 +72,7 @@ def write_results(
 
 
 def _write_picture(path: Path, photo: NDArray[np.uint8]) -> None:
-    """Write uint8 sRGB [H, W, 3] as PNG or JPEG, by the suffix, atomically.
-
-    Raises `InputError` for another suffix, and where the file cannot be written.
-    """
+    """Write uint8 sRGB [H, W, 3] as PNG or JPEG, by the suffix."""
     _check_suffix(path)
     try:
         if path.suffix.lower() == ".png":
@@ -68,19 +87,19 @@ def _write_picture(path: Path, photo: NDArray[np.uint8]) -> None:
 
 
 def _check_suffix(path: Path) -> None:
-    """Raise `InputError` unless the suffix is that of a picture that can be written."""
-    if path.suffix.lower() not in PICTURES:
-        raise InputError(f"{path} has to end in {', '.join(PICTURES)}; got {path.suffix!r}.")
+    if path.suffix.lower() not in _PICTURE_SUFFIXES:
+        raise InputError(
+            f"{path} has to end in {', '.join(_PICTURE_SUFFIXES)}; got {path.suffix!r}."
+        )
 
 
 def _write_map(
     path: Path, name: str, values: NDArray[np.float32], decomposition: Decomposition
 ) -> None:
-    """A 16-bit PNG in which value = scale * pixel + offset; its text says scale, offset, unit."""
-    output = decomposition.describe_map(name)
-    low = min(output.range[0], float(values.min()))
-    high = max(output.range[1], float(values.max()))
+    info = decomposition.describe_map(name)
+    low = min(info.range[0], float(values.min()))
+    high = max(info.range[1], float(values.max()))
     scale = (high - low) / _LEVELS or 1.0
     pixels = np.rint((values - low) / scale).clip(0, _LEVELS).astype(np.uint16)
-    note = {"scale": repr(scale), "offset": repr(low), "unit": output.unit}
-    write_png(path, pixels, {"Description": output.description, "map": name} | note)
+    text = {"scale": repr(scale), "offset": repr(low), "unit": info.unit}
+    write_png(path, pixels, {"Description": info.description, "map": name} | text)

@@ -107,7 +107,7 @@ def place_nodes(count: int, top: float) -> NDArray[np.float32]:
 def _blend_in_place(
     a: NDArray[np.float32], b: NDArray[np.float32], share: NDArray[np.float32]
 ) -> NDArray[np.float32]:
-    """a + share * (b - a), written into `b`; both are temporaries of the caller."""
+    """Compute a + share * (b - a) in place, in `b`; both are temporaries of the caller."""
     b -= a
     b *= share
     b += a
