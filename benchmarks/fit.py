@@ -24,9 +24,9 @@ from scipy.spatial.transform import Rotation
 
 from benchmarks.report import Results, main
 from skinnet.mesh.mesh import Mesh
-from skinnet.shape._moments import gather
+from skinnet.shape._moments import compute_moments
 from skinnet.shape._scan_points import ScanPoints
-from skinnet.shape._separable import Separable
+from skinnet.shape._separable import SeparableObjective
 from skinnet.shape.model import ShapeModel
 from skinnet.shape.procedural_head import IDENTITY_SIZE, compute_chart_angles, compute_head_radius
 from skinnet.shape.registration import Registration, register
@@ -138,7 +138,9 @@ class Case:
         fitted vertices to their own true places there."""
         fitted = self.pose.apply_inverse(found.vertices)
         there = ScanPoints(Mesh(fitted, triangles))
-        across = there.nearest(self.truth[self.present]).across(self.truth[self.present])
+        across = there.find_nearest(self.truth[self.present]).measure_distance(
+            self.truth[self.present]
+        )
         apart = np.linalg.norm(fitted - self.truth, axis=1)[self.present]
         return float(np.sqrt(np.mean(across**2))), float(np.sqrt(np.mean(apart**2)))
 
@@ -203,10 +205,12 @@ def evaluations(vertices: int = VERTICES, modes: int = MODES, repeats: int = 50)
     one = case(model, 0, missing=0)
     points = one.pose(one.truth)
     start = time.perf_counter()
-    moments = gather(model.basis, model.mean.astype(np.float64), points)
+    moments = compute_moments(model.basis, model.mean.astype(np.float64), points)
     gathered = time.perf_counter() - start
     turn, scale = Rotation.from_rotvec([0.1, 0.2, 0.3]).as_matrix(), one.pose.scale
-    with_prior, free = (Separable(moments, model.variances, weight) for weight in (1e-6, 0.0))
+    with_prior, free = (
+        SeparableObjective(moments, model.variances, weight) for weight in (1e-6, 0.0)
+    )
     free(turn, scale)
     seconds = {
         "eval": least(lambda: with_prior(turn, scale), repeats),

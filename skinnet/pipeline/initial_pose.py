@@ -11,7 +11,7 @@ from skinnet.mesh.mesh import Mesh
 from skinnet.render.scene import Scene
 from skinnet.render.views import OrthographicView
 from skinnet.render.visibility import GeometryBuffers, trace_geometry
-from skinnet.shape._icp import Stage
+from skinnet.shape._icp import IcpStage
 from skinnet.shape._scan_points import ScanPoints
 from skinnet.shape.fit_settings import FitSettings
 from skinnet.shape.model import ShapeModel
@@ -34,7 +34,7 @@ def find_initial_pose(model: ShapeModel, scan: Mesh) -> Similarity:
     mean = model.build_mesh(np.zeros(0))
     (own_place, own_width), (place, width) = (_face(mesh) for mesh in (mean, scan))
     rigid = FitSettings(kept=0.9, iterations=10)
-    stage = Stage(model, ScanPoints(scan), rigid, np.zeros(0), 800, 1, 1e3)
+    stage = IcpStage(model, ScanPoints(scan), rigid, np.zeros(0), 800, 1, 1e3)
     tried = []
     for shift, size in product(_SHIFTS, _SIZES):
         scale = size * width / own_width

@@ -11,20 +11,19 @@ from skinnet.shape._ibug import IBUG
 from skinnet.shape.model import ShapeModel
 
 FACE = (1.25, 0.975, -0.175, 2.5)
-"""The face on the chart: half its width and height and its middle's elevation in radians, and the
-exponent of the superellipse. It ends before the ears, at the hairline and under the chin."""
+"""Outline of the face on the chart, a superellipse: half its width, half its height and the
+elevation of its centre in radians, and its exponent. It excludes ears, hair and throat."""
 
 HEIGHT = 180.0
 """Height of the mean face in millimetres."""
 
-DRAWS = 400
-"""Drawn faces from which the modes are found, in pairs of opposite numbers."""
+SAMPLES = 400
+"""Sampled faces from which the modes are computed, in pairs with opposite identity."""
 
 MODES = 43
-"""Modes that are kept, as many as a face is drawn with numbers; they hold 99.99 % of the variance.
-"""
+"""Modes that are kept, one for each identity number; they hold 99.99 % of the variance."""
 
-# Azimuth and elevation in radians where the relief of the mean head has the features.
+# Azimuth and elevation in radians of the features of the mean head.
 _PLACES = {
     "left_brow_outer": (0.57, 0.15),
     "left_brow_inner": (0.12, 0.17),
@@ -45,46 +44,46 @@ _PLACES = {
 
 @cache
 def build_default_model() -> ShapeModel:
-    """The procedural face (`skinnet.shape.procedural_head`) with some 6,000 vertices; made once."""
+    """Build the procedural face with some 6,000 vertices, once."""
     return build_procedural_model()
 
 
 def build_procedural_model(rows: int = 115, columns: int = 153) -> ShapeModel:
-    """The procedural face on a grid of `rows` x `columns` over its chart, about a third inside.
+    """Build the procedural face on a grid over its chart, about a third of it inside.
 
-    The modes are principal components of `DRAWS` faces with seeded standard normal numbers.
+    The modes are principal components of `SAMPLES` faces with seeded standard normal numbers.
     Vertices, triangles and modes are their own mirror images under x -> -x. The texture space is
-    the chart. Needs torch. Raises `InputError` for an even number of columns,
-    which has no column in the middle, or a grid too coarse for the features.
+    the chart. Needs torch. Raises `InputError` for an even number of columns, which has no column
+    in the middle, or a grid too coarse for the features.
     """
     if columns % 2 == 0 or min(rows, columns) < 31:
         raise InputError(
             f"A procedural model has at least 31 rows and an odd number of columns from 31 on; got "
             f"{rows} and {columns}."
         )
-    azimuth, elevation = _axes(rows, columns)
-    number, triangles = _triangulated(_inside(azimuth, elevation))
+    azimuth, elevation = _compute_axes(rows, columns)
+    number, triangles = _triangulate(_select_face(azimuth, elevation))
     row, column = np.nonzero(number >= 0)
-    relief = _relief(number)
+    radial = _compute_modes(number)
     flat = np.cos(elevation[row])
     angle = azimuth[column]
     direction = np.stack([flat * np.sin(angle), np.sin(elevation[row]), flat * np.cos(angle)], 1)
-    mean = relief.mean[:, None] * direction
+    mean = radial.mean[:, None] * direction
     scale = HEIGHT / np.ptp(mean[:, 1])
     chart = np.stack([angle / azimuth[-1], elevation[row] / elevation[0]], 1)
     return ShapeModel(
         scale * mean,
-        relief.modes[:, :, None] * direction,
-        scale**2 * relief.variances,
+        radial.modes[:, :, None] * direction,
+        scale**2 * radial.variances,
         triangles,
         (chart + 1) / 2,
         triangles,
-        _landmarks(number, azimuth, elevation),
+        _place_landmarks(number, azimuth, elevation),
         name="the procedural face",
     )
 
 
-def _axes(
+def _compute_axes(
     rows: int, columns: int
 ) -> tuple[Float[np.ndarray, "columns"], Float[np.ndarray, "rows"]]:
     from skinnet.shape.procedural_head import compute_chart_angles
@@ -95,7 +94,7 @@ def _axes(
     return (azimuth - azimuth[::-1]) / 2, elevation
 
 
-def _inside(
+def _select_face(
     azimuth: Float[np.ndarray, "columns"], elevation: Float[np.ndarray, "rows"]
 ) -> Bool[np.ndarray, "rows columns"]:
     width, height, middle, power = FACE
@@ -104,10 +103,10 @@ def _inside(
     return inside
 
 
-def _triangulated(
+def _triangulate(
     inside: Bool[np.ndarray, "rows columns"],
 ) -> tuple[Int[np.ndarray, "rows columns"], Int[np.ndarray, "triangles 3"]]:
-    """Numbers of the vertices on the grid, -1 outside, and two triangles for each square within."""
+    """Number the vertices on the grid, -1 outside, and split each square inside into triangles."""
     square = inside[:-1, :-1] & inside[1:, :-1] & inside[:-1, 1:] & inside[1:, 1:]
     used = np.zeros_like(inside)
     for down in (slice(None, -1), slice(1, None)):
@@ -116,29 +115,29 @@ def _triangulated(
     number = np.where(used, np.cumsum(used).reshape(used.shape) - 1, -1)
     a, b, c, d = number[:-1, :-1], number[1:, :-1], number[1:, 1:], number[:-1, 1:]
     left = np.arange(square.shape[1]) < square.shape[1] // 2
-    # Squares are cut along diagonals that mirror each other.
+    # The diagonals on the left mirror those on the right.
     first = np.where(left[:, None], np.stack([a, b, d], -1), np.stack([a, b, c], -1))
     second = np.where(left[:, None], np.stack([b, c, d], -1), np.stack([a, c, d], -1))
     return number, np.concatenate([first[square], second[square]])
 
 
-class _Relief(NamedTuple):
-    """Mean radius of the vertices, orthonormal modes of it, and their variances."""
+class _RadialModes(NamedTuple):
+    """Mean radius of the vertices, its orthonormal modes, and their variances."""
 
     mean: Float[np.ndarray, "vertices"]
     modes: Float[np.ndarray, "modes vertices"]
     variances: Float[np.ndarray, "modes"]
 
 
-def _relief(number: Int[np.ndarray, "rows columns"]) -> _Relief:
-    """Principal components of the radius, which is all that differs between draws.
+def _compute_modes(number: Int[np.ndarray, "rows columns"]) -> _RadialModes:
+    """Compute principal components of the radius, which is all that differs between samples.
 
-    They are found on one half, whose vertices count twice but for the middle column's, and serve
-    both, so that these agree to the last bit.
+    They are computed on one half, whose vertices count twice except for the middle column's, and
+    used for both, so that these agree to the last bit.
     """
     middle = number.shape[1] // 2
     half = number[:, middle:] >= 0
-    radius = _drawn(half)
+    radius = _sample_radius(half)
     mean = radius.mean(0)
     twice = np.where(np.nonzero(half)[1] > 0, 2, 1)
     values, vectors = np.linalg.eigh((radius - mean) * twice @ (radius - mean).T)
@@ -151,31 +150,32 @@ def _relief(number: Int[np.ndarray, "rows columns"]) -> _Relief:
     place = np.full(half.shape, -1)
     place[half] = np.arange(len(mean))
     both = place[row, np.abs(column - middle)]
-    return _Relief(mean[both], modes[:, both], values / (DRAWS - 1))
+    return _RadialModes(mean[both], modes[:, both], values / (SAMPLES - 1))
 
 
-def _drawn(half: Bool[np.ndarray, "rows half"]) -> Float[np.ndarray, "draws vertices"]:
-    """Radius of drawn faces at the places chosen from the chart's right half and middle column."""
+def _sample_radius(half: Bool[np.ndarray, "rows half"]) -> Float[np.ndarray, "samples vertices"]:
+    """Sample the radius of faces over the chart's right half and its middle column."""
     import torch
 
     from skinnet.shape.procedural_head import IDENTITY_SIZE, compute_head_radius
 
-    lot = torch.Generator().manual_seed(0)
-    numbers = torch.randn(DRAWS // 2, IDENTITY_SIZE, generator=lot, dtype=torch.float64)
+    rng = torch.Generator().manual_seed(0)
+    numbers = torch.randn(SAMPLES // 2, IDENTITY_SIZE, generator=rng, dtype=torch.float64)
     rows, middle = half.shape[0], half.shape[1] - 1
-    few = torch.cat([numbers, -numbers]).split(25)
+    batches = torch.cat([numbers, -numbers]).split(25)
     heads = (
-        compute_head_radius(each, rows, 2 * middle + 1)[:, 0, :, middle:].numpy() for each in few
+        compute_head_radius(each, rows, 2 * middle + 1)[:, 0, :, middle:].numpy()
+        for each in batches
     )
     return np.concatenate([head[:, half] for head in heads])
 
 
-def _landmarks(
+def _place_landmarks(
     number: Int[np.ndarray, "rows columns"],
     azimuth: Float[np.ndarray, "columns"],
     elevation: Float[np.ndarray, "rows"],
 ) -> dict[str, int]:
-    """The vertices of the rows and columns nearest to `_PLACES`, and their mirror images."""
+    """Find the vertices nearest to `_PLACES`, and their mirror images."""
     found: dict[str, int] = {}
     for name, (across, along) in _PLACES.items():
         row = int(np.abs(elevation - along).argmin())

@@ -1,4 +1,4 @@
-"""Sums over correspondences that are all a separable fit needs of the vertices."""
+"""Moments of correspondences: all that a separable fit needs to know of the vertices."""
 
 from collections.abc import Iterator
 from dataclasses import dataclass
@@ -7,27 +7,28 @@ import numpy as np
 from jaxtyping import Float
 
 CHUNK = 1024
-"""Vertices whose sums are made at once, in float64 whatever the model's own precision."""
+"""Vertices that are summed at once, in float64 whatever the model's own precision."""
 
 
 @dataclass(frozen=True)
 class Moments:
-    """Weighted inner products between the columns of a fit's design and of its data.
+    """Weighted inner products of the columns of A and y in Equation 6 of Alotaibi & Smith 2017.
 
-    The design is Phi = [Q, 1 (x) I]: S modes and a translation, P = S + 3 columns. The data are ten
-    columns: the nine e_j x_k, of which any rotation of the data points is a combination, and the
-    mean shape. Neither depends on the pose, so a fit that has these sums never passes over the
-    vertices again (Alotaibi & Smith 2017, equations 5 to 8, in the model's rotated frame).
+    The data are rotated into the model's frame, which changes no residual because R is orthogonal.
+    There A has the columns Phi = [Q, 1 (x) I], S modes and a translation, for the linear parameters
+    s alpha and R^T t. Neither these nor the ten columns of which y is a combination depend on the
+    pose: the nine e_j x_k, which combine to every rotation of the data points, and the mean shape.
+    So a fit that has these sums needs no further pass over the vertices.
     """
 
     design: Float[np.ndarray, "columns columns"]
     cross: Float[np.ndarray, "columns 10"]
     data: Float[np.ndarray, "10 10"]
     origin: Float[np.ndarray, "3"]
-    """Point taken off all data points, for the sake of rounding."""
+    """Weighted mean of the data points, subtracted from them to limit rounding errors."""
 
 
-def gather(
+def compute_moments(
     basis: Float[np.ndarray, "modes vertices 3"],
     mean: Float[np.ndarray, "vertices 3"],
     points: Float[np.ndarray, "vertices 3"],
@@ -35,17 +36,17 @@ def gather(
     normals: Float[np.ndarray, "vertices 3"] | None = None,
     sliding: float = 0.0,
 ) -> Moments:
-    """Sums of the correspondences mean_i + Q_i alpha <-> points_i.
+    """Sum over the correspondences mean_i + Q_i alpha <-> points_i.
 
     `weights` (None: 1) multiply the squared residuals. With `normals`, unit vectors in the model's
-    frame, a residual along the surface counts only `sliding` of one across it:
+    frame, a residual along the surface counts only `sliding` times as much as one across it:
     W_i = w_i (n n^T + sliding (I - n n^T)).
     """
     weights = np.ones(len(mean)) if weights is None else weights
     origin = weights @ points / weights.sum()
     split = len(basis) + 3
     total = np.zeros((split + 10, split + 10))
-    for rows, columns in _chunks(basis, mean, points - origin, np.sqrt(weights)):
+    for rows, columns in _iterate_chunks(basis, mean, points - origin, np.sqrt(weights)):
         flat = columns.reshape(len(columns), -1)
         if normals is None:
             total += flat @ flat.T
@@ -57,13 +58,13 @@ def gather(
     return Moments(total[:split, :split], total[:split, split:], total[split:, split:], origin)
 
 
-def _chunks(
+def _iterate_chunks(
     basis: Float[np.ndarray, "modes vertices 3"],
     mean: Float[np.ndarray, "vertices 3"],
     points: Float[np.ndarray, "vertices 3"],
     root: Float[np.ndarray, "vertices"],
 ) -> Iterator[tuple[slice, Float[np.ndarray, "columns chunk 3"]]]:
-    """Weighted columns: modes, translations, the nine e_j x_k with j the slower, and the mean."""
+    """Yield weighted columns: modes, translations, the nine e_j x_k (j is slower), the mean."""
     modes = len(basis)
     buffer = np.zeros((modes + 13, min(CHUNK, len(mean)), 3))
     for start in range(0, len(mean), CHUNK):

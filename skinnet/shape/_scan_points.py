@@ -1,4 +1,4 @@
-"""A scan as points close together, with normals, for nearest-point search."""
+"""A scan as dense points with normals, for nearest-neighbour search."""
 
 from typing import NamedTuple
 
@@ -13,37 +13,39 @@ from skinnet.mesh.mesh import Mesh
 from skinnet.mesh.normals import compute_vertex_normals
 
 DENSE = 60_000
-"""A coarser scan is subdivided, all triangles into four, until it has this many points."""
+"""Triangles of a coarser scan are split into four until it has this many points."""
 
 SPIKE = 4.0
-"""A vertex that is this many times as far from its nearest neighbour as its neighbours are from
-theirs is an outlier of the scanner."""
+"""A vertex is an outlier of the scanner if its shortest edge is this many times as long as the
+mean of its neighbours' shortest edges."""
 
 
-class Nearest(NamedTuple):
-    """The nearest point of the surface to each query."""
+class NearestPoints(NamedTuple):
+    """The nearest point of a scan to each query."""
 
     distance: Float[np.ndarray, "queries"]
     point: Float[np.ndarray, "queries 3"]
     normal: Float[np.ndarray, "queries 3"]
-    boundary: Bool[np.ndarray, "queries"]
+    on_boundary: Bool[np.ndarray, "queries"]
 
-    def across(self, queries: Float[np.ndarray, "queries 3"]) -> Float[np.ndarray, "queries"]:
-        """Distance to the surface: to the tangent plane, or at an open edge to the point."""
+    def measure_distance(
+        self, queries: Float[np.ndarray, "queries 3"]
+    ) -> Float[np.ndarray, "queries"]:
+        """Measure the distance to the tangent plane, or on the boundary to the point."""
         plane = np.abs(np.einsum("qk,qk->q", queries - self.point, self.normal))
-        return np.where(self.boundary, self.distance, plane)
+        return np.where(self.on_boundary, self.distance, plane)
 
 
 class ScanPoints:
-    """Points on a mesh with unit normals, and which of them lie on its open edge.
+    """Points of a mesh with unit normals, and whether each lies on the boundary.
 
-    Spikes (`SPIKE`) are cut off first. Distances are to the points, which stand close: the
-    subdivision bounds their spacing, and the fit measures across the tangent plane.
+    Spikes (`SPIKE`) are removed first. Distances are to points, not to triangles. Subdivision
+    bounds the points' spacing, and a fit measures to the tangent plane.
     """
 
     def __init__(self, mesh: Mesh):
         vertices, triangles = mesh.vertices.astype(np.float64), mesh.triangles
-        triangles = triangles[~spikes(vertices, triangles)[triangles].any(1)]
+        triangles = triangles[~find_spikes(vertices, triangles)[triangles].any(1)]
         if not len(triangles):
             raise InputError(f"{mesh.name} has no surface, only single points far apart.")
         while len(vertices) < DENSE:
@@ -54,24 +56,26 @@ class ScanPoints:
         self.tree = cKDTree(self.points)
         edge = np.zeros(len(vertices), bool)
         edge[half_edges(triangles)[boundary(triangles).ravel()].ravel()] = True
-        self.boundary = edge[used]
+        self.on_boundary = edge[used]
 
-    def nearest(self, queries: Float[np.ndarray, "queries 3"]) -> Nearest:
-        """By distance between points, on all processors."""
+    def find_nearest(self, queries: Float[np.ndarray, "queries 3"]) -> NearestPoints:
+        """Find the nearest points, on all processors."""
         distance, index = self.tree.query(queries, workers=-1)
         distance = np.asarray(distance)
-        return Nearest(distance, self.points[index], self.normals[index], self.boundary[index])
+        return NearestPoints(
+            distance, self.points[index], self.normals[index], self.on_boundary[index]
+        )
 
 
-def spikes(
+def find_spikes(
     vertices: Float[np.ndarray, "vertices 3"], triangles: Int[np.ndarray, "triangles 3"]
 ) -> Bool[np.ndarray, "vertices"]:
-    """Vertices that stand away from all their neighbours, as `SPIKE` has it."""
+    """Find vertices whose edges are all far longer than their neighbours' (`SPIKE`)."""
     sides = triangles[:, [[0, 1], [1, 2], [2, 0]]].reshape(-1, 2)
     both = np.concatenate([sides, sides[:, ::-1]])
     length = np.linalg.norm(vertices[both[:, 0]] - vertices[both[:, 1]], axis=1)
-    nearest = np.full(len(vertices), np.inf)
-    np.minimum.at(nearest, both[:, 0], length)
+    shortest = np.full(len(vertices), np.inf)
+    np.minimum.at(shortest, both[:, 0], length)
     count = np.bincount(both[:, 0], minlength=len(vertices))
-    around = np.bincount(both[:, 0], nearest[both[:, 1]], len(vertices)) / np.maximum(count, 1)
-    return nearest > SPIKE * around
+    total = np.bincount(both[:, 0], shortest[both[:, 1]], len(vertices))
+    return shortest > SPIKE * (total / np.maximum(count, 1))

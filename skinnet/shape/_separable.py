@@ -1,4 +1,4 @@
-"""Pose, scale and shape of a linear model by separable nonlinear least squares."""
+"""Pose, scale and shape of a linear model by separable nonlinear least squares (VarPro)."""
 
 from dataclasses import dataclass
 from functools import cached_property
@@ -17,15 +17,16 @@ ITERATIONS = 60
 TOLERANCE = 1e-12
 """A fit has converged when a step lowers the objective by less than this share of it."""
 
-# z, and its derivatives by a turn about x, y and z, from the outer product e_j x_k: j major.
-_TURNS = np.stack([np.eye(3), *np.cross(np.eye(3)[:, None], -np.eye(3)).swapaxes(1, 2)])
+# The identity, and the generators of rotations about x, y and z. With T one of them, the rotated
+# data are z = T R^T x, whose coefficients for the columns e_j x_k (j is slower) are T R^T.
+_ROTATIONS = np.stack([np.eye(3), *np.cross(np.eye(3)[:, None], -np.eye(3)).swapaxes(1, 2)])
 
 
 class Evaluation(NamedTuple):
     """The objective at one pose, with the linear parameters at their best.
 
-    `gradient` [4] and `curvature` [4, 4] (J^T J of Gauss-Newton) are by a turn of the model about
-    its own axes in radians and by the natural logarithm of the scale.
+    `gradient` [4] and `curvature` [4, 4] (J^T J of Gauss-Newton) are derivatives by a rotation of
+    the model about its own axes in radians and by the natural logarithm of the scale.
     """
 
     value: float
@@ -36,15 +37,18 @@ class Evaluation(NamedTuple):
 
 
 @dataclass(frozen=True)
-class Separable:
+class SeparableObjective:
     """eps(r, s) = min over alpha, t of sum_i |x_i - s R(r) (Q_i alpha + mean_i) - t|^2_W + prior.
 
-    Equation 8 of Alotaibi & Smith (2017) with the mean rotated too and the sign of y mended: the
-    residuals are linear in alpha and t, and these are eliminated (variable projection). An
-    evaluation costs O(S^2), or O(S^3) with a prior, and does not depend on the number of vertices.
+    This is Equation 8 of Alotaibi & Smith 2017 with two corrections. Equation 5 prints
+    s (R Q_i alpha + mean_i), where the mean must be rotated too. Equation 6 needs
+    y = x - s (I (x) R) mean; the printed sign is reversed. The residuals are linear in alpha and t,
+    which Equation 7 eliminates (variable projection, Golub & Pereyra 1973).
 
-    The prior is `weight` * sum_k alpha_k^2 / variances_k, with `weight` in the data's squared
-    unit; 0 is the paper's form.
+    The prior is `weight` * sum_k alpha_k^2 / variances_k (a MAP estimate), with `weight` in the
+    data's squared unit; 0 is the paper's form. An evaluation costs O(S^2), or O(S^3) with a prior,
+    and does not depend on the number of vertices: with 53,490 vertices and 199 modes it takes about
+    a millisecond, where solving Equation 6 for A takes seconds (`python -m benchmarks.fit`).
     """
 
     moments: Moments
@@ -52,51 +56,47 @@ class Separable:
     weight: float = 0.0
 
     def __call__(self, rotation: Float[np.ndarray, "3 3"], scale: float) -> Evaluation:
-        """Value, gradient and curvature at a pose."""
+        """Compute Equation 8, its gradient and its curvature at a pose."""
         modes = len(self.variances)
-        linear, inner = self._reduced(scale)
-        turn = np.zeros((10, 5))
-        # z_a = sum_l T_a[j, l] R[k, l] x_k, so the weight of column e_j x_k is (T_a R^T)[j, k].
-        turn[:9, :4] = (_TURNS @ rotation.T).reshape(4, 9).T
-        turn[9, 4] = scale
-        y = turn[:, 0] - turn[:, 4]
+        # Without a prior the elimination does not depend on the pose.
+        linear, inner = self._eliminate(scale) if self.weight > 0 else self._eliminated
+        combination = np.zeros((10, 5))
+        combination[:9, :4] = (_ROTATIONS @ rotation.T).reshape(4, 9).T
+        combination[9, 4] = scale
+        y = combination[:, 0] - combination[:, 4]
         p = linear @ y
-        steps = np.column_stack([turn[:, 1:4], -turn[:, 4]])
+        steps = np.column_stack([combination[:, 1:4], -combination[:, 4]])
         value = y @ inner @ y
         gradient = 2 * steps.T @ inner @ y
         curvature = steps.T @ inner @ steps
         a = p[:modes]
         if self.weight > 0:
-            # A longer scale needs less alpha for the same shape: the prior's rows move with it.
+            # The linear parameters are scale * alpha, so the prior's rows depend on the scale.
             prior = self.weight / (scale**2 * self.variances)
-            pull = prior * a
-            solved = self._solve(scale, np.concatenate([pull, np.zeros(3)]))[:modes]
-            gradient[3] -= 2 * a @ pull
-            coupling = -pull @ linear[:modes] @ steps
+            prior_gradient = prior * a
+            right = np.concatenate([prior_gradient, np.zeros(3)])
+            solved = self._solve_normal_equations(scale, right)[:modes]
+            gradient[3] -= 2 * a @ prior_gradient
+            coupling = -prior_gradient @ linear[:modes] @ steps
             curvature[3] += coupling
             curvature[:, 3] += coupling
-            curvature[3, 3] += pull @ a - pull @ solved
+            curvature[3, 3] += prior_gradient @ a - prior_gradient @ solved
         translation = rotation @ p[modes:] + self.moments.origin
         pose = Similarity(rotation, scale, translation)
         return Evaluation(float(value), gradient, curvature, a / scale, pose)
 
     @cached_property
-    def _free(self) -> tuple[Float[np.ndarray, "columns 10"], Float[np.ndarray, "10 10"]]:
-        return self._eliminated(1.0)
+    def _eliminated(self) -> tuple[Float[np.ndarray, "columns 10"], Float[np.ndarray, "10 10"]]:
+        return self._eliminate(1.0)
 
-    def _reduced(
+    def _eliminate(
         self, scale: float
     ) -> tuple[Float[np.ndarray, "columns 10"], Float[np.ndarray, "10 10"]]:
-        """Best linear parameters for each column of data, and what they leave of its products."""
-        return self._eliminated(scale) if self.weight > 0 else self._free
-
-    def _eliminated(
-        self, scale: float
-    ) -> tuple[Float[np.ndarray, "columns 10"], Float[np.ndarray, "10 10"]]:
-        linear = self._solve(scale, self.moments.cross)
+        """Compute A^+ times each data column (Equation 7), and the products of what it leaves."""
+        linear = self._solve_normal_equations(scale, self.moments.cross)
         return linear, self.moments.data - self.moments.cross.T @ linear
 
-    def _solve(
+    def _solve_normal_equations(
         self, scale: float, right: Float[np.ndarray, "columns *right"]
     ) -> Float[np.ndarray, "columns *right"]:
         design = self.moments.design.copy()
@@ -112,7 +112,7 @@ class Separable:
 
 
 class Solution(NamedTuple):
-    """Where a separable fit ended, and the objective after each step that was taken."""
+    """Where a separable fit ended, and the objective after each accepted step."""
 
     pose: Similarity
     alpha: Float[np.ndarray, "modes"]
@@ -121,29 +121,29 @@ class Solution(NamedTuple):
     converged: bool
 
 
-def solve(
-    problem: Separable,
+def minimise(
+    objective: SeparableObjective,
     start: Similarity,
     iterations: int = ITERATIONS,
     tolerance: float = TOLERANCE,
 ) -> Solution:
-    """Gauss-Newton on rotation and scale from `start`, damped after Levenberg.
+    """Minimise Equation 8 of Alotaibi & Smith 2017 from `start` by damped Gauss-Newton steps.
 
-    Stops when a step would lower the objective by less than `tolerance` of it, or after
-    `iterations`.
+    The damping is Levenberg-Marquardt's. The iteration stops when a step is predicted to lower the
+    objective by less than `tolerance` times its value, or after `iterations`.
     """
-    best = problem(start.rotation, start.scale)
+    best = objective(start.rotation, start.scale)
     history, damping = [best.value], 1e-6
     for _ in range(iterations):
         scaled = best.curvature + damping * np.diag(np.diag(best.curvature))
         step = np.linalg.lstsq(scaled, -best.gradient / 2, rcond=None)[0]
-        promised = -(best.gradient @ step) / 2
-        if promised <= tolerance * best.value:
+        predicted = -(best.gradient @ step) / 2
+        if predicted <= tolerance * best.value:
             return Solution(best.pose, best.alpha, best.value, history, True)
         rotation = best.pose.rotation @ Rotation.from_rotvec(step[:3]).as_matrix()
-        tried = problem(rotation, best.pose.scale * float(np.exp(np.clip(step[3], -1, 1))))
-        if tried.value < best.value:
-            best, damping = tried, max(damping / 10, 1e-12)
+        candidate = objective(rotation, best.pose.scale * float(np.exp(np.clip(step[3], -1, 1))))
+        if candidate.value < best.value:
+            best, damping = candidate, max(damping / 10, 1e-12)
             history.append(best.value)
         else:
             damping *= 10

@@ -7,21 +7,35 @@ from skinnet.errors import InputError
 
 @dataclass(frozen=True)
 class FitSettings:
-    """How a model is fitted to a scan (Alotaibi & Smith 2017, section 4.1).
+    """How a model is fitted to a scan.
 
     Args:
         kept: share of the model's vertices, those with the closest matches, that a step fits.
-        normals: measure across the scan's surface, and drop matches that face another way.
-        sliding: with `normals`, what a squared residual along the surface counts, in [0, 1].
-        angle: with `normals`, the largest angle in degrees between a vertex and its match.
-        map_weight: weight of the prior on the coefficients against a surface that tells as much as
-            1,000 points accurate to 1 mm, however many are matched; 0 is the paper's fit.
-        stages: numbers of vertices and of modes, coarse to fine, 0 for all, and the least prior
-            while the matches are still rough.
+        normals: measure to the scan's tangent planes, and drop matches with another orientation.
+        sliding: with `normals`, the weight in [0, 1] of a squared residual along the surface.
+        angle: with `normals`, the largest angle in degrees between a vertex' normal and its
+        match's. map_weight: weight of the prior on the coefficients, relative to 1,000 matched
+        points that are
+            accurate to 1 mm, however many are matched; 0 is the paper's fit.
+        stages: for each stage, coarse to fine, the numbers of vertices and modes (0 for all) and
+        the
+            least weight of the prior, while matches are still rough.
         iterations: largest number of steps in each stage.
         tolerance: a stage ends when the kept vertices' RMS distance changes, twice in a row, by
             less than this share of it or by less than 0.01 mm.
-        seed: of the choice of vertices in the coarse stages.
+        seed: seed of the random choice of vertices in the coarse stages.
+
+    Raises:
+        InputError: If a value is out of range.
+
+    Source:
+        Section 4.1 of Alotaibi & Smith 2017; `FitSettings(normals=False, map_weight=0.0)` is the
+        paper's fit.
+
+    Example:
+        >>> from skinnet.shape import FitSettings
+        >>> FitSettings(kept=0.9).kept
+        0.9
     """
 
     kept: float = 0.8
@@ -52,7 +66,14 @@ class FitSettings:
 
 @dataclass(frozen=True)
 class StageRecord:
-    """One stage of a fit: RMS distance in mm of the kept vertices before each step."""
+    """What one stage of a fit did.
+
+    Attributes:
+        vertices: Number of vertices.
+        modes: Number of modes.
+        rms: RMS distance in mm of the kept vertices before each step.
+        converged: Whether the distance settled before the iterations ran out.
+    """
 
     vertices: int
     modes: int

@@ -1,8 +1,8 @@
-"""A face of our own making: a star-shaped head with bumps for its features.
+"""A procedural head: a star-shaped surface with bumps for its features.
 
-Every direction from the middle of the head has one radius, so a point is found from its direction,
-and a chart in azimuth and elevation covers the face without a seam. Lengths are in half heads:
-crown and chin lie one unit above and below the eyes. x points to the face's left, y up, z forward.
+The surface is one radius per direction from the middle of the head, so an equirectangular chart in
+azimuth and elevation covers the face without a seam. The unit is half a head: crown and chin lie
+one unit above and below the eyes. x points to the face's left, y up, z forward.
 """
 
 import torch
@@ -13,8 +13,8 @@ CHART_EXTENT = (2.0, 1.5)
 """Largest azimuth and elevation of the chart, in radians."""
 
 # Azimuth and elevation, their widths (radians), and height (half heads). A feature off the middle
-# stands on both sides.
-BUMPS: dict[str, tuple[float, float, float, float, float]] = {
+# is on both sides.
+_BUMPS: dict[str, tuple[float, float, float, float, float]] = {
     "bridge": (0.0, -0.10, 0.09, 0.20, 0.09),
     "tip": (0.0, -0.33, 0.11, 0.10, 0.19),
     "wing": (0.12, -0.38, 0.06, 0.06, 0.06),
@@ -30,15 +30,33 @@ BUMPS: dict[str, tuple[float, float, float, float, float]] = {
     "ear": (1.50, -0.08, 0.10, 0.20, 0.10),
 }
 
-AXES = (0.69, 1.0, 0.90)
+_AXES = (0.69, 1.0, 0.90)
 ROUNDNESS = 2.6
-IDENTITY_SIZE = len(BUMPS) * 3 + len(AXES) + 1
+"""Exponent of the superellipsoid under the features."""
+
+IDENTITY_SIZE = len(_BUMPS) * 3 + len(_AXES) + 1
+"""How many numbers make a head: three for each feature, four for the superellipsoid."""
 
 
 def compute_chart_angles(
     rows: int, columns: int
 ) -> tuple[Float[Tensor, "1 columns"], Float[Tensor, "rows 1"]]:
-    """Azimuth and elevation in radians of the chart's texels; the first row is the top."""
+    """Compute the azimuth and elevation of each texel of the chart.
+
+    Args:
+        rows: Texels along the chart's height.
+        columns: Texels along its width.
+
+    Returns:
+        Azimuths of the columns, from the face's right to its left, and elevations of the rows, from
+        the top down, in radians.
+
+    Example:
+        >>> from skinnet.shape import compute_chart_angles
+        >>> azimuth, elevation = compute_chart_angles(3, 5)
+        >>> azimuth
+        tensor([[-2., -1.,  0.,  1.,  2.]])
+    """
     azimuth = torch.linspace(-CHART_EXTENT[0], CHART_EXTENT[0], columns)[None, :]
     elevation = torch.linspace(CHART_EXTENT[1], -CHART_EXTENT[1], rows)[:, None]
     return azimuth, elevation
@@ -47,19 +65,34 @@ def compute_chart_angles(
 def compute_head_radius(
     identity: Float[Tensor, "batch identity"], rows: int, columns: int
 ) -> Float[Tensor, "batch 1 rows columns"]:
-    """Radius of bald heads; `identity` holds standard normal numbers [batch, 43], zero the mean."""
+    """Compute the radius of bald heads over the chart.
+
+    Args:
+        identity: 43 numbers per head, standard normal over people; zeros give the mean head.
+        rows: Texels along the chart's height.
+        columns: Texels along its width.
+
+    Returns:
+        Radius in half heads, of the dtype of `identity`.
+
+    Example:
+        >>> import torch
+        >>> from skinnet.shape import compute_head_radius
+        >>> compute_head_radius(torch.zeros(1, 43), 61, 81)[0, 0, 30, 40].item() < 1
+        True
+    """
     azimuth, elevation = (axis.to(identity) for axis in compute_chart_angles(rows, columns))
-    numbers = identity[:, : -len(AXES) - 1].unflatten(1, (len(BUMPS), 3))
-    radius = _ellipsoid(identity[:, -len(AXES) - 1 :], azimuth, elevation)
-    return (radius + _bumps(numbers, azimuth, elevation))[:, None]
+    numbers = identity[:, : -len(_AXES) - 1].unflatten(1, (len(_BUMPS), 3))
+    radius = _compute_ellipsoid(identity[:, -len(_AXES) - 1 :], azimuth, elevation)
+    return (radius + _compute_bumps(numbers, azimuth, elevation))[:, None]
 
 
-def _ellipsoid(
+def _compute_ellipsoid(
     numbers: Float[Tensor, "batch 4"], azimuth: Tensor, elevation: Tensor
 ) -> Float[Tensor, "batch rows columns"]:
-    a, b, c = (numbers.new_tensor(AXES) * (1 + 0.05 * numbers[:, :3])).unbind(1)
+    a, b, c = (numbers.new_tensor(_AXES) * (1 + 0.05 * numbers[:, :3])).unbind(1)
     taper = (0.16 + 0.04 * numbers[:, 3, None, None]) * (-elevation).clamp_min(0)
-    x, y, z = _direction(azimuth, elevation).abs() ** ROUNDNESS
+    x, y, z = _compute_direction(azimuth, elevation).abs() ** ROUNDNESS
     widths = (a[:, None, None] * (1 - taper), b[:, None, None], c[:, None, None])
     radius = torch.zeros_like(x)
     for axis, width in zip((x, y, z), widths, strict=True):
@@ -67,18 +100,18 @@ def _ellipsoid(
     return radius.pow(-1 / ROUNDNESS)
 
 
-def _bumps(
+def _compute_bumps(
     numbers: Float[Tensor, "batch bumps 3"], azimuth: Tensor, elevation: Tensor
 ) -> Float[Tensor, "batch rows columns"]:
-    at, level, width, tall, height = numbers.new_tensor(list(BUMPS.values())).T[..., None]
+    at, level, width, tall, height = numbers.new_tensor(list(_BUMPS.values())).T[..., None]
     scale, up, wide = numbers[..., None].unbind(2)
-    # A bump on the middle line has one side, the others two: the nearer one counts.
+    # A bump off the middle is on both sides; the nearer one counts.
     across = torch.where(at > 0, azimuth.abs() - at, azimuth) / (width * (1 + 0.12 * wide))
     along = (elevation.T - level - 0.025 * up) / tall
     profile = height * (1 + 0.3 * scale) * torch.exp(-(along**2) / 2)
     return torch.matmul(profile.mT, torch.exp(-(across**2) / 2))
 
 
-def _direction(azimuth: Tensor, elevation: Tensor) -> Float[Tensor, "3 rows columns"]:
+def _compute_direction(azimuth: Tensor, elevation: Tensor) -> Float[Tensor, "3 rows columns"]:
     x, y = elevation.cos() * azimuth.sin(), elevation.sin().expand(-1, azimuth.shape[1])
     return torch.stack([x, y, elevation.cos() * azimuth.cos()])

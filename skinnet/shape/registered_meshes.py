@@ -43,12 +43,13 @@ def build_shape_model(
 
     Example:
         >>> import numpy as np
-        >>> from skinnet.shape import build_shape_model, load_shape_model
-        >>> face = load_shape_model(modes=2)
-        >>> people = [face.build_mesh(np.array([a, b])) for a, b in ((9, 0), (-9, 0), (0, 1))]
-        >>> model = build_shape_model(people, modes=1, align=False)
-        >>> round(float(abs((model.basis[0] * face.basis[0]).sum())), 3)
-        1.0
+        >>> from skinnet.mesh import Mesh
+        >>> from skinnet.shape import build_shape_model
+        >>> corners = np.array([[-70.0, 0, 0], [70, 0, 0], [0, 180, 0]])
+        >>> people = [Mesh(corners * [1, 1 + k / 50, 1], np.array([[0, 1, 2]])) for k in range(3)]
+        >>> model = build_shape_model(people, align=False)
+        >>> model.variances.round(2)
+        array([12.96])
     """
     if not meshes:
         raise InputError(f"{name} has no meshes; give at least two.")

@@ -1,4 +1,4 @@
-"""A shape model fitted to a scan: landmarks, then trimmed iterative closest points."""
+"""The fit of a shape model to a scan: landmarks, then trimmed ICP."""
 
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
@@ -8,27 +8,33 @@ from jaxtyping import Bool, Float
 
 from skinnet.errors import InputError
 from skinnet.mesh.mesh import Mesh
-from skinnet.shape._icp import Stage
-from skinnet.shape._moments import gather
+from skinnet.shape._icp import IcpStage
+from skinnet.shape._moments import compute_moments
 from skinnet.shape._scan_points import ScanPoints
-from skinnet.shape._separable import Separable, solve
+from skinnet.shape._separable import SeparableObjective, minimise
 from skinnet.shape.fit_settings import FitSettings, StageRecord
 from skinnet.shape.model import ShapeModel
 from skinnet.shape.similarity import Similarity, fit_similarity
 
 LANDMARK_NOISE = 2.0
-"""Standard deviation in mm that landmarks are taken to have when they start a fit."""
+"""Assumed standard deviation in mm of the landmarks that start a fit."""
 
 LANDMARK_MODES = 20
+"""Modes that landmarks alone determine; section 4.1 uses 20 landmarks."""
 
 
 @dataclass(frozen=True)
 class Registration:
-    """A fitted model.
+    """The result of a fit.
 
-    `vertices` [N, 3] in the scan's frame and unit are pose(model.reconstruct(alpha)). `distances` [N] in
-    mm are those to the scan's surface, `kept` [N] the vertices that the last step fitted.
-    `millimetres` is the length of the scan's unit as the fit's scale has it.
+    Attributes:
+        pose: From the model's frame and unit to the scan's.
+        alpha: Shape coefficients.
+        vertices: The fitted vertices, pose(model.reconstruct(alpha)), in the scan's frame and unit.
+        distances: Distance in mm of each vertex to the scan's surface.
+        kept: True for the vertices that the last step fitted.
+        millimetres: Length of the scan's unit in mm, as the fit's scale implies.
+        record: What each stage did.
     """
 
     pose: Similarity
@@ -41,7 +47,7 @@ class Registration:
 
     @property
     def converged(self) -> bool:
-        """Whether the last stage met its stopping rule before its iterations ran out."""
+        """Whether the last stage settled before its iterations ran out."""
         return self.record[-1].converged
 
     @property
@@ -50,31 +56,57 @@ class Registration:
         return float(np.sqrt(np.mean(self.distances[self.kept] ** 2)))
 
 
-Progress = Callable[[str], None]
-
-
 def register(
     model: ShapeModel,
     scan: Mesh,
     landmarks: Mapping[str, Float[np.ndarray, "3"]] | None = None,
     settings: FitSettings | None = None,
-    progress: Progress | None = None,
+    progress: Callable[[str], None] | None = None,
     start: Similarity | None = None,
 ) -> Registration:
-    """Fit `model` to `scan`, begun from the landmarks that both have, or from a pose `start`.
+    """Fit a shape model to a scan by trimmed, non-rigid ICP.
 
-    Matches are the nearest points of the scan to the model's vertices; those on the scan's open
-    edge are dropped, and of all vertices the share `kept` with the closest matches is fitted.
-    `progress` is called with a line for every stage. Without landmarks,
-    `skinnet.pipeline.find_initial_pose` finds a start. Raises `InputError` without either, and
-    where the scan and the model do not meet.
+    The fit alternates between nearest points of the scan and pose, scale and coefficients that fit
+    them best. Matches on the scan's boundary are dropped, and of all vertices the share
+    `settings.kept` with the closest matches is fitted.
+
+    Args:
+        model: The shape model.
+        scan: The scan, in any frame and unit.
+        landmarks: Named points of the scan, at least four of the model's landmarks. They start the
+            fit.
+        settings: How to fit; None for the defaults.
+        progress: Called with one line of text after each stage.
+        start: A pose near the solution, used where there are no landmarks.
+            `skinnet.pipeline.find_initial_pose` finds the pose of an upright face.
+
+    Returns:
+        The fitted pose, coefficients and vertices.
+
+    Raises:
+        InputError: If there are neither landmarks nor a start, fewer than four landmarks are known,
+        or
+            the model does not come to lie on the scan.
+
+    Source:
+        Section 4.1 and Equations 5 to 8 of Alotaibi & Smith 2017.
+
+    Example:
+        >>> import numpy as np
+        >>> from skinnet.shape import FitSettings, load_shape_model, register
+        >>> model = load_shape_model(modes=5)
+        >>> scan = model.build_mesh(np.array([300.0, 0, 0, 0, 0]))
+        >>> landmarks = {name: scan.vertices[i] for name, i in model.landmarks.items()}
+        >>> settings = FitSettings(stages=((500, 5, 0.0),), map_weight=0.0)
+        >>> float(register(model, scan, landmarks, settings).alpha[0].round())
+        300.0
     """
     settings = settings or FitSettings()
     pose, alpha = _begin(model, scan, landmarks, settings, start)
-    surface = ScanPoints(scan)
+    points = ScanPoints(scan)
     records = []
     for vertices, modes, prior in settings.stages:
-        stage = Stage(model, surface, settings, alpha, vertices, modes, prior)
+        stage = IcpStage(model, points, settings, alpha, vertices, modes, prior)
         try:
             pose, alpha, record = stage.run(pose, alpha)
         except InputError as error:
@@ -85,7 +117,7 @@ def register(
                 f"{scan.name}: {record.vertices} vertices, {record.modes} modes, "
                 f"{len(record.rms)} steps, {record.rms[-1]:.3f} mm"
             )
-    return _finished(model, surface, settings, pose, alpha, tuple(records))
+    return _finish(model, points, settings, pose, alpha, tuple(records))
 
 
 def _begin(
@@ -96,7 +128,7 @@ def _begin(
     start: Similarity | None,
 ) -> tuple[Similarity, Float[np.ndarray, "modes"]]:
     if landmarks is not None:
-        return from_landmarks(model, landmarks, settings.map_weight)
+        return _fit_to_landmarks(model, landmarks, settings.map_weight)
     if start is None:
         raise InputError(
             f"{scan.name} comes without landmarks and without a start; give one of the two. "
@@ -105,10 +137,13 @@ def _begin(
     return start, np.zeros(1)
 
 
-def from_landmarks(
+def _fit_to_landmarks(
     model: ShapeModel, landmarks: Mapping[str, Float[np.ndarray, "3"]], map_weight: float = 0.0
 ) -> tuple[Similarity, Float[np.ndarray, "modes"]]:
-    """Pose and first coefficients from named points alone, held by a prior at 2 mm of noise."""
+    """Fit pose and first coefficients to named points alone, with a prior for 2 mm of noise.
+
+    Section 4.1 of Alotaibi & Smith 2017 starts from 20 landmarks.
+    """
     names = sorted(set(landmarks) & set(model.landmarks))
     if len(names) < 4:
         raise InputError(
@@ -120,25 +155,25 @@ def from_landmarks(
     start = fit_similarity(model.mean[vertices].astype(np.float64), points)
     modes = min(LANDMARK_MODES, len(model.basis))
     basis = model.basis[:modes, vertices].astype(np.float64)
-    moments = gather(basis, model.mean[vertices].astype(np.float64), points)
+    moments = compute_moments(basis, model.mean[vertices].astype(np.float64), points)
     noise = LANDMARK_NOISE * start.scale / model.millimetres
     weight = max(noise, np.sqrt(map_weight) * start.scale / model.millimetres) ** 2
-    found = solve(Separable(moments, model.variances[:modes].astype(np.float64), weight), start)
+    variances = model.variances[:modes].astype(np.float64)
+    found = minimise(SeparableObjective(moments, variances, weight), start)
     return found.pose, found.alpha
 
 
-def _finished(
+def _finish(
     model: ShapeModel,
-    surface: ScanPoints,
+    points: ScanPoints,
     settings: FitSettings,
     pose: Similarity,
     alpha: Float[np.ndarray, "modes"],
     records: tuple[StageRecord, ...],
 ) -> Registration:
-    stage = Stage(model, surface, settings, alpha, 0, len(alpha))
-    vertices = pose(stage.shape(alpha))
-    match, kept, _ = stage.matches(vertices, pose)
+    stage = IcpStage(model, points, settings, alpha, 0, len(alpha))
+    vertices = pose(stage.reconstruct(alpha))
+    match, kept, _ = stage.match(vertices, pose)
     millimetres = model.millimetres / pose.scale
-    return Registration(
-        pose, alpha, vertices, match.across(vertices) * millimetres, kept, millimetres, records
-    )
+    distances = match.measure_distance(vertices) * millimetres
+    return Registration(pose, alpha, vertices, distances, kept, millimetres, records)

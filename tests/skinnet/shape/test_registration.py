@@ -7,7 +7,7 @@ from benchmarks.fit import big_model, case
 from skinnet.errors import InputError
 from skinnet.mesh.mesh import Mesh
 from skinnet.shape.fit_settings import FitSettings
-from skinnet.shape.registration import from_landmarks, register
+from skinnet.shape.registration import _fit_to_landmarks, register
 
 VERTICES, MODES = 1500, 12
 
@@ -77,7 +77,7 @@ def test_a_fit_without_iterations_left_says_so(model):
 
 def test_landmarks_alone_give_pose_and_size(model):
     made = case(model, 0, noise=0)
-    pose, alpha = from_landmarks(model, made.landmarks)
+    pose, alpha = _fit_to_landmarks(model, made.landmarks)
     assert pose.scale == pytest.approx(made.pose.scale, rel=0.05)
     rows = [model.landmarks[name] for name in made.landmarks]
     error = pose(model.reconstruct(alpha))[rows] - np.stack(list(made.landmarks.values()))

@@ -4,7 +4,7 @@ import numpy as np
 import trimesh
 
 from skinnet.mesh.mesh import Mesh
-from skinnet.shape._scan_points import DENSE, ScanPoints, spikes
+from skinnet.shape._scan_points import DENSE, ScanPoints, find_spikes
 from skinnet.shape.similarity import fit_similarity
 
 
@@ -27,9 +27,9 @@ def test_distances_to_a_subdivided_sphere():
     draw = np.random.default_rng(0)
     queries = draw.normal(size=(40, 3))
     exact = [closest(ball, query) for query in queries]
-    across = surface.nearest(queries).across(queries)
+    across = surface.find_nearest(queries).measure_distance(queries)
     np.testing.assert_allclose(across, exact, atol=2e-3)
-    assert not surface.boundary.any()
+    assert not surface.on_boundary.any()
 
 
 def test_the_open_edge_of_a_half_sphere():
@@ -37,16 +37,16 @@ def test_the_open_edge_of_a_half_sphere():
     upper = ball.triangles[(ball.vertices[ball.triangles][..., 2] > -1e-9).all(1)]
     surface = ScanPoints(Mesh(ball.vertices, upper, name="a half sphere"))
     below = np.array([[1.2, 0.0, -0.5], [0.0, 0.0, 1.1]])
-    nearest = surface.nearest(below)
-    assert nearest.boundary.tolist() == [True, False]
-    assert nearest.across(below)[0] == nearest.distance[0]
+    nearest = surface.find_nearest(below)
+    assert nearest.on_boundary.tolist() == [True, False]
+    assert nearest.measure_distance(below)[0] == nearest.distance[0]
 
 
 def test_spikes_are_found_and_cut_off():
     ball = sphere()
     bent = ball.vertices.copy()
     bent[100] *= 1.8
-    assert np.flatnonzero(spikes(bent, ball.triangles)).tolist() == [100]
+    assert np.flatnonzero(find_spikes(bent, ball.triangles)).tolist() == [100]
     surface = ScanPoints(Mesh(bent, ball.triangles, name="a sphere with a spike"))
     assert np.linalg.norm(surface.points, axis=1).max() < 1.01
 
@@ -55,7 +55,7 @@ def test_a_finer_patch_is_no_spike():
     ball = sphere(3)
     part = np.arange(len(ball.triangles)) < 200
     finer = trimesh.remesh.subdivide(ball.vertices, ball.triangles, face_index=np.flatnonzero(part))
-    assert not spikes(*finer).any()
+    assert not find_spikes(*finer).any()
 
 
 def test_similarity_and_the_best_mirrored_one():

@@ -6,8 +6,8 @@ from scipy.optimize import least_squares
 from scipy.spatial.transform import Rotation
 
 from skinnet.errors import InputError
-from skinnet.shape._moments import gather
-from skinnet.shape._separable import Separable, solve
+from skinnet.shape._moments import compute_moments
+from skinnet.shape._separable import SeparableObjective, minimise
 from skinnet.shape.similarity import Similarity
 
 MODES, VERTICES = 6, 40
@@ -36,10 +36,10 @@ class Problem:
             self.normals /= np.linalg.norm(self.normals, axis=1, keepdims=True)
             across = self.normals[:, :, None] * self.normals[:, None]
             self.metric = (1 - sliding) * across + sliding * np.eye(3)
-        moments = gather(
+        moments = compute_moments(
             self.basis, self.mean, self.points, self.weights, self.normals, sliding or 0.0
         )
-        self.separable = Separable(moments, self.variances, weight)
+        self.separable = SeparableObjective(moments, self.variances, weight)
 
     def residuals(self, numbers: np.ndarray) -> np.ndarray:
         """Of rotation vector, log scale, translation and alpha, in the model's rotated frame."""
@@ -78,7 +78,7 @@ def test_equals_a_plain_solver_of_the_whole_objective(weight, sliding):
     tight = dict.fromkeys(("xtol", "ftol", "gtol"), 1e-15)
     plain = least_squares(problem.residuals, begin, **tight)
     start = Similarity(np.eye(3), 1.0, np.zeros(3))
-    ours = solve(problem.separable, start)
+    ours = minimise(problem.separable, start)
     assert ours.converged
     assert ours.value == pytest.approx(2 * plain.cost, rel=1e-8)
     np.testing.assert_allclose(ours.alpha, plain.x[7:], rtol=1e-6, atol=1e-6)
@@ -115,7 +115,7 @@ def test_curvature_with_a_prior_is_positive_and_near_the_jacobian_near_the_solut
 def test_history_never_rises():
     problem = Problem(1.0, None)
     start = Similarity(Rotation.from_rotvec([0, 1.5, 0]).as_matrix(), 4.0, np.zeros(3))
-    history = solve(problem.separable, start).history
+    history = minimise(problem.separable, start).history
     assert np.all(np.diff(history) < 0)
     assert len(history) > 2
 
@@ -124,15 +124,15 @@ def test_a_vertex_without_weight_changes_nothing():
     problem = Problem(0.0, None)
     points = problem.points.copy()
     points[:4] += 1e4
-    moved = gather(problem.basis, problem.mean, points, problem.weights)
-    again = Separable(moved, problem.variances)(POSE, SCALE)
+    moved = compute_moments(problem.basis, problem.mean, points, problem.weights)
+    again = SeparableObjective(moved, problem.variances)(POSE, SCALE)
     assert again.value == pytest.approx(problem.separable(POSE, SCALE).value, rel=1e-9)
 
 
 def test_chunks_change_nothing(monkeypatch):
     problem = Problem(0.0, None)
     monkeypatch.setattr("skinnet.shape._moments.CHUNK", 7)
-    parts = gather(problem.basis, problem.mean, problem.points, problem.weights)
+    parts = compute_moments(problem.basis, problem.mean, problem.points, problem.weights)
     np.testing.assert_allclose(parts.design, problem.separable.moments.design, rtol=1e-12)
     np.testing.assert_allclose(parts.cross, problem.separable.moments.cross, rtol=1e-9, atol=1e-9)
 
@@ -140,7 +140,7 @@ def test_chunks_change_nothing(monkeypatch):
 def test_modes_that_cannot_be_told_apart_are_refused_in_words():
     problem = Problem(0.0, None)
     basis = np.concatenate([problem.basis, problem.basis[:1]])
-    moments = gather(basis, problem.mean, problem.points, problem.weights)
-    twin = Separable(moments, np.ones(MODES + 1))
+    moments = compute_moments(basis, problem.mean, problem.points, problem.weights)
+    twin = SeparableObjective(moments, np.ones(MODES + 1))
     with pytest.raises(InputError, match="fewer modes or a MAP weight"):
         twin(POSE, SCALE)
