@@ -116,7 +116,7 @@ class FittedFaces(LightningDataModule):
         self.views: list[View] = []
 
     @property
-    def described(self) -> str:
+    def description(self) -> str:
         """What a model card says of these data."""
         own = f"{len(self.skins)} fitted scans, seed {self.seed}, {self.size} px"
         return own if self.model is None else f"{own}, half with skin of {self.model_file}"

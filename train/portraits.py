@@ -128,9 +128,9 @@ class Portraits(LightningDataModule):
         self.crops: dict[str, list[Crop]] = {}
 
     @property
-    def described(self) -> str:
+    def description(self) -> str:
         """One line on these data for files of the model."""
-        return f"{len(self.crops['train'])} photographs and {self.synthetic.described}"
+        return f"{len(self.crops['train'])} photographs and {self.synthetic.description}"
 
     def prepare_data(self) -> None:
         """Find the faces, and cast the synthetic heads that are missing."""

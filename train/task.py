@@ -202,7 +202,7 @@ class SkinTask(LightningModule):
 
     def on_save_checkpoint(self, checkpoint: dict[str, Any]) -> None:
         """Describe the model, so that `SkinAutoencoder.from_pretrained` can load it."""
-        data = getattr(self.trainer.datamodule, "described", "unknown data")
+        data = getattr(self.trainer.datamodule, "description", "unknown data")
         self.model.trained_on = f"{self.trained_on}{data}, {self.global_step} steps"
         checkpoint["skinnet"] = self.model.describe()
 

@@ -112,7 +112,7 @@ class SyntheticFaces(LightningDataModule):
         self.buffers: dict[str, Drawn] = {}
 
     @property
-    def described(self) -> str:
+    def description(self) -> str:
         """What a model card says of these data."""
         kind = "procedural heads" if self.ict is None else "ICT-FaceKit and procedural heads"
         said = f"{self.heads['train']} {kind} of skinnet's twin, seed {self.seed}, {self.size} px"
