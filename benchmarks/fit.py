@@ -23,7 +23,7 @@ from scipy.ndimage import zoom
 from scipy.spatial.transform import Rotation
 
 from benchmarks.report import Results, main
-from skinnet.mesh.mesh import Mesh
+from skinnet.mesh import Mesh
 from skinnet.shape._moments import compute_moments
 from skinnet.shape._scan_points import ScanPoints
 from skinnet.shape._separable import SeparableObjective

@@ -21,8 +21,7 @@ from skinnet.appearance.colour import SkinColour
 from skinnet.appearance.maps_file import load_maps
 from skinnet.cli import main as skinnet
 from skinnet.images import linear_to_srgb, to_uint8
-from skinnet.mesh.mesh import Mesh
-from skinnet.mesh.mesh_file import write_mesh
+from skinnet.mesh import Mesh, write_mesh
 from skinnet.physics import load_spectrum_to_srgb
 from skinnet.shape import load_shape_model, write_landmarks
 from train.synthetic.face_painting import Paint, paint_skin

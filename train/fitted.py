@@ -17,12 +17,10 @@ from skinnet.appearance.hybrid import HybridModel
 from skinnet.appearance.maps_file import load_maps
 from skinnet.appearance.skin_texture import SkinTexture
 from skinnet.errors import InputError
-from skinnet.mesh.mesh_file import read_mesh
+from skinnet.mesh import read_mesh
 from skinnet.network.autoencoder import F_BLOOD_MAX, F_MEL_MAX
 from skinnet.physics import SkinDecoder
-from skinnet.render.scene import Scene
-from skinnet.render.views import frame_face
-from skinnet.render.visibility import trace_geometry
+from skinnet.render import Scene, frame_face, trace_geometry
 from train.batch import Batch
 from train.stream import StreamLoader, count_seen_samples
 from train.synthetic.faces import Drawn

@@ -5,10 +5,8 @@ from typing import NamedTuple
 import numpy as np
 from jaxtyping import Float, Float16, Int8, UInt8, UInt64
 
-from skinnet.mesh.mesh import Mesh
-from skinnet.render.scene import Scene
-from skinnet.render.views import OrthographicView, PerspectiveView
-from skinnet.render.visibility import GeometryBuffers, trace_geometry
+from skinnet.mesh import Mesh
+from skinnet.render import GeometryBuffers, OrthographicView, PerspectiveView, Scene, trace_geometry
 from train.synthetic.directions import DIRECTIONS
 from train.synthetic.heads import Head
 

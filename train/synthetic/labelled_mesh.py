@@ -6,7 +6,7 @@ from typing import NamedTuple
 import numpy as np
 from jaxtyping import Float, Int, UInt8
 
-from skinnet.mesh.normals import compute_vertex_normals
+from skinnet.mesh import compute_vertex_normals
 
 
 class Part(NamedTuple):
