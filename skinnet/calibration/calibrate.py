@@ -145,7 +145,7 @@ def _matches(
 def _described(sheet: Sheet, colours: Float[np.ndarray, "3 points"], fit: Fit) -> Calibration:
     moved, length = sheet.nodes @ fit.transform.T, _length(colours.T)
     places = fit.places.clip(0, sheet.last)
-    there = _length((colours - fit.transform @ sheet.surface.colour(places)).T)
+    there = _length((colours - fit.transform @ sheet.surface.evaluate(places)).T)
     singular = np.linalg.svd(fit.transform, compute_uv=False) * _length(sheet.nodes) / length
     # A transform that mirrors channels or flattens them shows that no other came near.
     flat = singular[-1] < SINGULAR[0] or singular[0] > SINGULAR[1]

@@ -97,10 +97,10 @@ def _outward(
     """How far colours lie past an edge, what moves it, and the sheet's width, in deviations."""
     at = places.copy()
     at[axis] = end * sheet.last[axis]
-    jet = sheet.surface.at(at)
+    jet = sheet.surface.differentiate(at)
     edge = transform @ jet.colour
     deviation = noise.deviation(edge)
-    over, along = (transform @ slope / deviation for slope in (jet.by_row, jet.by_column))
+    over, along = (transform @ slope / deviation for slope in (jet.row, jet.column))
     if axis == 1:
         over, along = along, over
     tiny = np.finfo(np.float64).tiny ** 0.5

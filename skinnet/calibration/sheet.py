@@ -9,7 +9,7 @@ from scipy.optimize import nnls
 from scipy.spatial import cKDTree
 
 from skinnet.errors import InputError
-from skinnet.physics._colour_surface import Surface
+from skinnet.physics._colour_surface import ColourSurface
 
 NEWTON = 3.0
 """Nodes that a step to a foot crosses at most."""
@@ -80,7 +80,7 @@ class Sheet:
         for axis in (0, 1):
             halves = np.arange(0, grid.shape[axis] - 0.75, 0.5)
             grid = CubicSpline(np.arange(grid.shape[axis]), grid, axis=axis)(halves)
-        self.surface = Surface(grid)
+        self.surface = ColourSurface(grid)
         self.last = self.surface.last.astype(np.float64)
 
     def nearest(
@@ -107,9 +107,9 @@ class Sheet:
         """
         beyond = margin * self.last
         for _ in range(steps):
-            jet = self.surface.at(places)
+            jet = self.surface.differentiate(places)
             away = (colours - transform @ jet.colour) / deviation
-            a, b = (transform @ slope / deviation for slope in (jet.by_row, jet.by_column))
+            a, b = (transform @ slope / deviation for slope in (jet.row, jet.column))
             low = np.maximum(-beyond - places, -NEWTON)
             high = np.minimum(self.last + beyond - places, NEWTON)
             places = places + _step(a, b, away, low, high)
@@ -124,10 +124,10 @@ class Sheet:
         margin: float = 0.0,
     ) -> Around:
         """What is left of colours beside the sheet at their feet."""
-        jet = self.surface.at(places)
+        jet = self.surface.differentiate(places)
         beyond = margin * self.last
         free = (places > -beyond) & (places < self.last + beyond)
-        a, b = (transform @ slope / deviation for slope in (jet.by_row, jet.by_column))
+        a, b = (transform @ slope / deviation for slope in (jet.row, jet.column))
         a = _unit(a * free[0])
         b = b * free[1]
         b = _unit(b - (b * a).sum(0) * a)

@@ -106,7 +106,7 @@ class ColourSurface:
         descent = np.stack([_dot(residual, derivatives.row), _dot(residual, derivatives.column)])
         hessian = _hessian(derivatives, residual)
         low, high = -position, self.last.astype(position.dtype) - position
-        return position + clipped_newton_step(descent, hessian, low, high)
+        return np.asarray(position + clipped_newton_step(descent, hessian, low, high))
 
 
 def clipped_newton_step(

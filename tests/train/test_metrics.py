@@ -5,7 +5,7 @@ import pytest
 import torch
 
 from skinnet.network import Reading, SkinMaps
-from skinnet.physics.camera import SpectralCamera
+from skinnet.physics import SpectralCamera
 from train.batch import Batch
 from train.metrics import ReadingMetrics
 
