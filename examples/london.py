@@ -24,8 +24,8 @@ from skinnet.appearance.hybrid import HybridModel
 from skinnet.appearance.maps_file import save_maps
 from skinnet.cli import main as skinnet
 from skinnet.images import read_photo, srgb_to_linear
-from skinnet.pipeline._maps import invert
 from skinnet.pipeline.calibrate import ColourSettings
+from skinnet.pipeline.texture_inversion import invert_texture
 from skinnet.shape import compute_chart_angles
 from skinnet.texture import TextureSpace, WarpedTexture, warp_texture
 from train.synthetic.model_skins import save_skins
@@ -160,7 +160,7 @@ def main() -> None:
     colours = settings.calibrated([image[mask].astype(np.float64) for image in images])
     rows = zip(files, images, colours.found.exposures, strict=True)
     for file, image, factor in rows:
-        texture, off = invert(WarpedTexture(image, mask), factor, colours, file.stem)
+        texture, off = invert_texture(WarpedTexture(image, mask), factor, colours, file.stem)
         save_maps(maps / f"{file.stem}_maps.npz", texture, colours.colour)
         medians = [np.median(one[mask]) for one in (texture.f_mel, texture.f_blood)]
         print(f"{file.stem}: melanin {medians[0]:.3f}, hemoglobin {medians[1]:.3f}, {off:.1%} off")

@@ -1,1 +1,5 @@
-"""The classic pipeline as commands: from scans to maps, models, samples and edits."""
+"""The classic pipeline: from scans to maps, models, samples and edits."""
+
+import lazy_loader
+
+__getattr__, __dir__, __all__ = lazy_loader.attach_stub(__name__, __file__)

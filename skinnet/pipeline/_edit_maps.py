@@ -1,30 +1,34 @@
-"""`skinnet edit-maps`: pigments scaled, added or painted, and the face rendered again."""
+"""`skinnet edit-maps`: scale, add to or paint pigments, and render the face again."""
 
 from pathlib import Path
 
 import numpy as np
 from jaxtyping import Float
 from jsonargparse import ArgumentParser, Namespace
+from PIL import Image
 
+from skinnet.appearance.colour import SkinColour
 from skinnet.appearance.edit import PigmentEdit, edit_texture
 from skinnet.appearance.maps_file import load_maps, save_maps
 from skinnet.appearance.skin_texture import SkinTexture
 from skinnet.images.photograph import read_photo, write_png
 from skinnet.inference.panel import draw_grid, draw_picture, round_up
 from skinnet.mesh.mesh_file import read_mesh, write_mesh
-from skinnet.pipeline._build_model import MAPS
-from skinnet.pipeline._maps_writer import covered, pigment_tiles, shown, textured
+from skinnet.pipeline._maps_writer import add_texture, draw_pigments, fill_albedo, show_albedo
+from skinnet.pipeline._output import MAPS_END, add_end, add_output, make_output_folder
 from skinnet.pipeline._progress import log
-from skinnet.pipeline.command import add_output, output_folder
 from skinnet.pipeline.relight import RelightSettings
 
-PIGMENTS = ("melanin", "hemoglobin")
+RENAMED = {"relight.turn": "relight.yaw", "relight.tilt": "relight.pitch"}
+"""Keys and flags of earlier versions."""
+
+_PIGMENTS = ("melanin", "hemoglobin")
 
 
 def add_arguments(parser: ArgumentParser) -> None:
-    """Maps, changes, light and output."""
+    """Add the options for maps, edits, light and output."""
     parser.add_argument("maps", type=Path, help="A NAME_maps.npz file.")
-    for name in PIGMENTS:
+    for name in _PIGMENTS:
         parser.add_argument(f"--{name}", type=float, default=1.0, help="Factor, 0 or more.")
         parser.add_argument(
             f"--{name}_add", type=float, default=0.0, help="Volume fraction added after it."
@@ -33,13 +37,13 @@ def add_arguments(parser: ArgumentParser) -> None:
             f"--{name}_paint",
             type=float | None,
             default=None,
-            help="Volume fraction that takes the map's place, as a rule under a mask.",
+            help="Volume fraction that replaces the map, as a rule under a mask.",
         )
     parser.add_argument(
         "--mask",
         type=Path | None,
         default=None,
-        help="Picture over the texture space: white takes the change, black does not.",
+        help="Picture over the texture space: white texels are edited, black ones are not.",
     )
     parser.add_class_arguments(RelightSettings, "relight")
     add_output(parser, "the folder of the maps")
@@ -50,41 +54,62 @@ def run(config: Namespace) -> int:
     before, colour = load_maps(config.maps)
     melanin, hemoglobin = (
         PigmentEdit(config[name], config[f"{name}_add"], config[f"{name}_paint"])
-        for name in PIGMENTS
+        for name in _PIGMENTS
     )
-    after = edit_texture(before, melanin, hemoglobin, _mask(config.mask))
-    name = config.maps.name.removesuffix(MAPS).removesuffix(".npz")
-    output = output_folder(config.output or config.maps.parent)
-    stem = output / f"{name}_edited"
-    albedo = shown(after.albedo(colour), after)
-    save_maps(stem.with_name(f"{stem.name}_maps.npz"), after, colour)
-    write_png(stem.with_name(f"{stem.name}_albedo.png"), albedo)
-    tops = (_top(before, after, "f_mel"), _top(before, after, "f_blood"))
-    rows = [
-        [draw_picture(f"albedo {when}", shown(one.albedo(colour), one)), *pigment_tiles(one, tops)]
-        for when, one in (("before", before), ("after", after))
-    ]
+    after = edit_texture(before, melanin, hemoglobin, _read_mask(config.mask))
+    name = config.maps.name.removesuffix(MAPS_END).removesuffix(".npz")
+    stem = make_output_folder(config.output or config.maps.parent) / f"{name}_edited"
+    save_maps(add_end(stem, MAPS_END), after, colour)
+    write_png(add_end(stem, "_albedo.png"), show_albedo(after.albedo(colour), after))
+    rows = _draw_rows(before, after, colour)
     mesh = config.maps.with_name(f"{name}_face.obj")
     if mesh.is_file():
-        face = read_mesh(mesh)
-        albedos = [covered(one.albedo(colour), one) for one in (before, after)]
-        pictures = [config.relight.picture(face, one) for one in albedos]
-        write_png(stem.with_name(f"{stem.name}_render.png"), pictures[1])
-        write_mesh(stem.with_name(f"{stem.name}_face.obj"), textured(face, albedo))
-        for row, rendered in zip(rows, pictures, strict=True):
-            row.append(draw_picture("relit", rendered))
+        for row, rendered in zip(
+            rows, _write_faces(mesh, stem, (before, after), colour, config.relight), strict=True
+        ):
+            row.append(rendered)
     else:
         log(f"There is no {mesh} to render on; the albedo alone is written.")
     panel = draw_grid([tile for row in rows for tile in row], len(rows[0]))
-    write_png(stem.with_name(f"{stem.name}_panel.png"), panel)
+    write_png(add_end(stem, "_panel.png"), panel)
     print(f"{config.maps}: {stem}_maps.npz, _albedo.png, _panel.png", flush=True)
     return 0
 
 
-def _mask(path: Path | None) -> Float[np.ndarray, "h w"] | None:
+def _read_mask(path: Path | None) -> Float[np.ndarray, "h w"] | None:
     return None if path is None else np.asarray(read_photo(path).mean(-1) / 255)
 
 
-def _top(before: SkinTexture, after: SkinTexture, name: str) -> float:
+def _draw_rows(
+    before: SkinTexture, after: SkinTexture, colour: SkinColour
+) -> list[list[Image.Image]]:
+    """Draw albedo and pigments before and after, each pigment on one scale."""
+    ends = (_scale_end(before, after, "f_mel"), _scale_end(before, after, "f_blood"))
+    rows = []
+    for when, texture in (("before", before), ("after", after)):
+        albedo = draw_picture(f"albedo {when}", show_albedo(texture.albedo(colour), texture))
+        rows.append([albedo, *draw_pigments(texture, ends)])
+    return rows
+
+
+def _scale_end(before: SkinTexture, after: SkinTexture, name: str) -> float:
     values = [np.percentile(getattr(one, name)[one.mask], 99) for one in (before, after)]
     return round_up(float(max(values)))
+
+
+def _write_faces(
+    mesh: Path,
+    stem: Path,
+    textures: tuple[SkinTexture, SkinTexture],
+    colour: SkinColour,
+    relight: RelightSettings,
+) -> list[Image.Image]:
+    """Write the edited face as a mesh and as a picture; draw tiles of it before and after."""
+    face, after = read_mesh(mesh), textures[1]
+    albedos = [fill_albedo(one.albedo(colour), one) for one in textures]
+    pictures = [relight.render(face, albedo) for albedo in albedos]
+    write_png(add_end(stem, "_render.png"), pictures[1])
+    write_mesh(
+        add_end(stem, "_face.obj"), add_texture(face, show_albedo(after.albedo(colour), after))
+    )
+    return [draw_picture("relit", picture) for picture in pictures]

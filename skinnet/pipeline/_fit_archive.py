@@ -1,4 +1,4 @@
-"""The file of a fitted shape: NAME_shape.npz."""
+"""The archive of a fitted shape: NAME_shape.npz."""
 
 import json
 from dataclasses import asdict
@@ -16,24 +16,24 @@ from skinnet.shape.similarity import Similarity
 _ARRAYS = ("alpha", "vertices", "distances", "kept")
 
 
-def save_fit(path: Path, found: Registration) -> None:
-    """Write a fit as .npz of plain arrays, whole or not at all."""
-    stages = json.dumps([asdict(stage) for stage in found.record])
-    arrays = {name: getattr(found, name) for name in _ARRAYS}
+def save_fit(path: Path, fit: Registration) -> None:
+    """Write a fit to a .npz file of plain arrays, all of it or nothing."""
+    stages = json.dumps([asdict(stage) for stage in fit.record])
+    arrays = {name: getattr(fit, name) for name in _ARRAYS}
     with write_atomically(path) as part:
         np.savez(
             part,
-            rotation=found.pose.rotation,
-            scale=np.float64(found.pose.scale),
-            translation=found.pose.translation,
-            millimetres=np.float64(found.millimetres),
+            rotation=fit.pose.rotation,
+            scale=np.float64(fit.pose.scale),
+            translation=fit.pose.translation,
+            millimetres=np.float64(fit.millimetres),
             stages=np.array(stages),
             **arrays,
         )
 
 
 def load_fit(path: Path) -> Registration:
-    """Read a fit. Raises `InputError` for a file that is missing, damaged or something else."""
+    """Read a fit; a file that is missing, damaged or something else is an `InputError`."""
     try:
         with np.load(path, allow_pickle=False) as file:
             pose = Similarity(file["rotation"], float(file["scale"]), file["translation"])

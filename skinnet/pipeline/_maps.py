@@ -1,77 +1,36 @@
 """`skinnet maps`: scans to maps of melanin and hemoglobin in a model's texture space."""
 
-from dataclasses import asdict, dataclass, replace
+from dataclasses import asdict, dataclass
 from functools import cached_property
 from pathlib import Path
 from typing import Any
 
 import numpy as np
-import torch
 from jaxtyping import Float
 from jsonargparse import ArgumentParser, Namespace
 
 from skinnet.appearance.skin_texture import SkinTexture
-from skinnet.errors import InputError
-from skinnet.files import write_atomically
-from skinnet.pipeline._fit_shape import Fitted, fitted
-from skinnet.pipeline._maps_writer import ENDS, write_maps
-from skinnet.pipeline._progress import digest, finished, log, write_record
-from skinnet.pipeline._scans import add_scan_arguments, each_scan, scan_options
+from skinnet.pipeline._fit_shape import FittedScan, fit_scan
+from skinnet.pipeline._maps_writer import MAPS_ENDS, write_maps
+from skinnet.pipeline._progress import compute_fingerprint, log, read_finished, write_record
+from skinnet.pipeline._scans import add_scan_arguments, collect_options, process_scans
+from skinnet.pipeline._warp_scan import make_texture_space, warp_scan
 from skinnet.pipeline.calibrate import Colours, ColourSettings
+from skinnet.pipeline.texture_inversion import invert_texture
+from skinnet.pipeline.texture_space import WarpSettings, embed_model
 from skinnet.shape.fit_settings import FitSettings
 from skinnet.shape.model import ShapeModel
-from skinnet.texture.mirror import find_mirror_vertices
-from skinnet.texture.projection import MAX_NORMAL_ANGLE, project_texture
-from skinnet.texture.tutte import compute_tutte_embedding
-from skinnet.texture.warp import TextureSpace, WarpedTexture
+from skinnet.texture.warp import WarpedTexture
 
-DOUBTFUL = 0.5
-"""Share of texels off the manifold above which maps are doubtful."""
+_DOUBTFUL_SHARE = 0.5
+"""Share of texels off the skin manifold above which maps are doubtful."""
 
 
 @dataclass(frozen=True)
-class WarpSettings:
-    """How a scan's texture comes into the model's texture space (section 4.2).
+class WarpedScan:
+    """A fitted scan, and its texture in the model's space."""
 
-    Args:
-        size: texels along a side of the maps.
-        limit: distance in mm between model and scan above which a texel is not covered.
-        angle: angle in degrees between their normals above which it is not covered.
-        own_uv: use the model's own texture coordinates in place of a Tutte embedding of its mean.
-    """
-
-    size: int = 1024
-    limit: float = 5.0
-    angle: float = MAX_NORMAL_ANGLE
-    own_uv: bool = False
-
-    def __post_init__(self) -> None:
-        if not 16 <= self.size <= 8192:
-            raise InputError(f"size is a number of texels from 16 to 8192; got {self.size}.")
-
-
-def embedded(model: ShapeModel, own_uv: bool = False) -> ShapeModel:
-    """The model with a Tutte embedding of its mean as texture space, or with its own."""
-    if own_uv:
-        if model.uv is None:
-            raise InputError(f"{model.name} has no texture coordinates; leave out own_uv.")
-        return model
-    mean = model.mean.astype(np.float64)
-    uv = compute_tutte_embedding(mean, model.triangles, find_mirror_vertices(mean))
-    return replace(model, uv=uv, uv_triangles=model.triangles)
-
-
-def texture_space(model: ShapeModel, size: int) -> TextureSpace:
-    """The texels of an embedded model."""
-    assert model.uv is not None and model.uv_triangles is not None  # `embedded` saw to it
-    return TextureSpace(model.uv, model.uv_triangles, size)
-
-
-@dataclass(frozen=True)
-class Skin:
-    """One scan on its way: the fit, and its texture in the model's space."""
-
-    fitted: Fitted
+    fitted: FittedScan
     warped: WarpedTexture
 
     @cached_property
@@ -81,7 +40,7 @@ class Skin:
 
 
 def add_arguments(parser: ArgumentParser) -> None:
-    """Scans, model, output, and the settings of each step."""
+    """Add the options for scans, shape model, output and the settings of each step."""
     add_scan_arguments(parser)
     parser.add_class_arguments(FitSettings, "fit")
     parser.add_class_arguments(WarpSettings, "warp")
@@ -89,106 +48,63 @@ def add_arguments(parser: ArgumentParser) -> None:
 
 
 def run(config: Namespace) -> int:
-    """Fit, warp, calibrate on all scans together, invert; what is on disk already is kept."""
-    options = scan_options(config)
+    """Fit and warp each scan, calibrate all together, invert; finished work is kept."""
+    options = collect_options(config)
     config.colour.check()
-    model = embedded(options.load_model(), config.warp.own_uv)
-    space = texture_space(model, config.warp.size)
-    skins: list[Skin] = []
+    model = embed_model(options.load_model(), config.warp.own_uv)
+    space = make_texture_space(model, config.warp.size)
+    scans: list[WarpedScan] = []
 
-    def one(path: Path) -> None:
-        fit = fitted(path, model, options, config.output, config.fit, textured=True)
-        skins.append(Skin(fit, warped(fit, model, space, config.warp)))
+    def process(path: Path) -> None:
+        fitted = fit_scan(path, model, options, config.output, config.fit, textured=True)
+        scans.append(WarpedScan(fitted, warp_scan(fitted, model, space, config.warp)))
 
-    code = each_scan(config.scan, options, config.output, one)
-    if not skins:
+    code = process_scans(config.scan, options, config.output, process)
+    if not scans:
         return code
-    colours = config.colour.calibrated([skin.colours for skin in skins])
-    for skin, factor in zip(skins, colours.found.exposures, strict=True):
-        inverted(skin, factor, model, colours)
+    colours = config.colour.calibrated([scan.colours for scan in scans])
+    for scan, exposure in zip(scans, colours.found.exposures, strict=True):
+        write_scan_maps(scan, exposure, model, colours)
     return code
 
 
-def warped(
-    fit: Fitted, model: ShapeModel, space: TextureSpace, settings: WarpSettings
-) -> WarpedTexture:
-    """A scan's texture in the model's space, from disk if it was made before."""
-    file, record = (fit.stem.with_name(f"{fit.stem.name}_warp.{end}") for end in ("npz", "json"))
-    fingerprint = digest(fit.fingerprint, settings, space.uv.tobytes().hex())
-    if finished(record, fingerprint, [file]):
-        with np.load(file, allow_pickle=False) as found:
-            return WarpedTexture(found["image"], found["mask"])
-    limit = settings.limit / fit.found.millimetres
-    made = project_texture(space, fit.mesh(model), fit.scan.mesh, limit, settings.angle)
-    covered = made.mask.sum() / space.mask.sum()
-    if not covered:
-        raise InputError(
-            f"{fit.scan.path}: no texel of the model lies within {settings.limit:g} mm of the "
-            f"scan; look at {fit.stem}_shape.png."
-        )
-    with write_atomically(file) as part:
-        np.savez(part, image=made.image, mask=made.mask)
-    write_record(record, fingerprint, {"covered": float(covered)})
-    log(f"{fit.scan.path}: {covered:.0%} of the model's texels are covered by the scan.")
-    return made
-
-
-def inverted(skin: Skin, factor: float, model: ShapeModel, colours: Colours) -> None:
-    """Invert one scan's texture and write its maps; those made before from the same are kept."""
-    stem = skin.fitted.stem
-    record = stem.with_name(f"{stem.name}_maps.json")
-    fingerprint = digest(
-        skin.fitted.fingerprint,
-        skin.warped.image.tobytes().hex(),
-        factor,
+def write_scan_maps(scan: WarpedScan, exposure: float, model: ShapeModel, colours: Colours) -> None:
+    """Invert the texture of a scan and write its maps, unless the same inputs gave them before."""
+    path, stem = scan.fitted.scan.path, scan.fitted.stem
+    fingerprint = compute_fingerprint(
+        scan.fitted.fingerprint,
+        scan.warped.image.tobytes().hex(),
+        exposure,
         colours.settings,
         colours.colour.to_record(),
     )
-    files = [stem.with_name(stem.name + end) for end in ENDS]
-    if finished(record, fingerprint, files) is not None:
+    record = stem.with_name(f"{stem.name}_maps.json")
+    files = [stem.with_name(stem.name + end) for end in MAPS_ENDS]
+    if read_finished(record, fingerprint, files) is not None:
         log(f"{files[0]} is there already and is kept.")
         return
-    texture, off = invert(skin.warped, factor, colours, str(skin.fitted.scan.path))
-    face = skin.fitted.mesh(model)
-    write_maps(stem, texture, colours.colour, face)
-    found = write_record(record, fingerprint, summary(skin, texture, off, factor, colours))
-    if off > DOUBTFUL:
+    texture, off_manifold = invert_texture(scan.warped, exposure, colours, str(path))
+    write_maps(stem, texture, colours.colour, scan.fitted.mesh(model))
+    summary = summarise_maps(scan, texture, off_manifold, exposure, colours)
+    write_record(record, fingerprint, summary)
+    if off_manifold > _DOUBTFUL_SHARE:
         log(
-            f"{skin.fitted.scan.path}: {off:.0%} of the texels lie off the colours of skin, and "
-            "their pigments mean little; name the light and camera (--colour.light, .camera) or "
+            f"{path}: the colours of {off_manifold:.0%} of the texels are not those of skin, so "
+            "their pigments are doubtful; name the light and camera (--colour.light, .camera) or "
             "something white in the texture (--colour.white)."
         )
-    mean = ", ".join(f"{name} {found[name]['median']:.3g}" for name in ("melanin", "hemoglobin"))
+    mean = ", ".join(f"{name} {summary[name]['median']:.3g}" for name in ("melanin", "hemoglobin"))
     print(
-        f"{skin.fitted.scan.path}: median {mean}; {off:.1%} of the texels lie off the colours of "
-        f"skin; {stem}_maps.npz, _panel.png, _face.obj",
+        f"{path}: median {mean}; {off_manifold:.1%} of the texels lie off the colours of skin; "
+        f"{stem}_maps.npz, _panel.png, _face.obj",
         flush=True,
     )
 
 
-def invert(
-    warped: WarpedTexture, factor: float, colours: Colours, name: str
-) -> tuple[SkinTexture, float]:
-    """Maps of a texture's colours times `factor`, and the share of them off the skin manifold."""
-    mask = warped.mask
-    gain = factor * colours.settings.balance()
-    rgb = (gain * warped.image[mask]).astype(np.float32)
-    found = colours.inverse(torch.from_numpy(rgb), colours.settings.refine)
-    maps = [np.zeros((*mask.shape, *one.shape[1:]), np.float32) for one in found[:3]]
-    for whole, part in zip(maps, found[:3], strict=True):
-        whole[mask] = part.numpy()
-    f_mel, f_blood, _ = maps
-    bare = SkinTexture(f_mel, f_blood, np.zeros((*mask.shape, 3), np.float32), mask, name)
-    # The offset is taken from the table that will add it again, so that the texture comes back.
-    offset = np.zeros((*mask.shape, 3), np.float32)
-    offset[mask] = rgb - bare.albedo(colours.colour)[mask]
-    return replace(bare, offset=offset), float(1 - found.on_manifold.float().mean())
-
-
-def summary(
-    skin: Skin, texture: SkinTexture, off: float, factor: float, colours: Colours
+def summarise_maps(
+    scan: WarpedScan, texture: SkinTexture, off_manifold: float, exposure: float, colours: Colours
 ) -> dict[str, Any]:
-    """What the record of a scan's maps says."""
+    """Summarise the maps of a scan for their record."""
     mask = texture.mask
     levels = {"p05": 5, "median": 50, "p95": 95}
     pigments = {
@@ -196,14 +112,14 @@ def summary(
         for name, values in (("melanin", texture.f_mel), ("hemoglobin", texture.f_blood))
     }
     return {
-        "file": str(skin.fitted.scan.path),
-        "rms_mm": skin.fitted.found.rms,
+        "file": str(scan.fitted.scan.path),
+        "rms_mm": scan.fitted.fit.rms,
         "texels": int(mask.sum()),
-        "exposure": factor,
+        "exposure": exposure,
         "transform": colours.found.transform.tolist(),
         "calibration": colours.found.record,
         "settings": asdict(colours.settings),
-        "off_manifold": off,
+        "off_manifold": off_manifold,
         "offset_rms": float(np.sqrt(np.mean(texture.offset[mask] ** 2))),
         **pigments,
     }

@@ -1,4 +1,4 @@
-"""The files of one person's maps: numbers, a textured mesh to open elsewhere, and a panel."""
+"""Writer of one person's maps: numbers, pictures, a textured mesh and a panel."""
 
 from pathlib import Path
 
@@ -17,38 +17,38 @@ from skinnet.mesh.mesh import Mesh
 from skinnet.mesh.mesh_file import write_mesh
 from skinnet.pipeline.relight import RelightSettings
 
-FLUSH, TAN = 2.0, 1.5
-"""Factors of hemoglobin and of melanin in Figure 6."""
+_FLUSH, _TAN = 2.0, 1.5
+"""Factors of hemoglobin and of melanin in Figure 6 of Alotaibi & Smith 2017."""
 
-UNKNOWN = 0.6
-"""Grey albedo of what a scan did not cover, in pictures only."""
+_UNKNOWN_ALBEDO = 0.6
+"""Grey albedo of texels that a scan does not cover, in pictures only."""
 
 _LEVELS = 65535
+
+MAPS_ENDS = ("_maps.npz", "_melanin.png", "_hemoglobin.png", "_face.obj", "_panel.png")
+"""Ends of the names of the files that `write_maps` writes."""
 
 
 def write_maps(stem: Path, texture: SkinTexture, colour: SkinColour, face: Mesh) -> list[Path]:
     """Write NAME_maps.npz, NAME_melanin.png, NAME_hemoglobin.png, NAME_face.obj and a panel."""
-    files = [stem.with_name(stem.name + end) for end in ENDS]
+    files = [stem.with_name(stem.name + end) for end in MAPS_ENDS]
     maps, melanin, hemoglobin, mesh, panel = files
     save_maps(maps, texture, colour)
     write_fraction(melanin, texture, "f_mel")
     write_fraction(hemoglobin, texture, "f_blood")
     albedo = texture.albedo(colour)
-    write_mesh(mesh, textured(face, shown(albedo, texture)))
-    write_png(panel, maps_panel(texture, colour, face))
+    write_mesh(mesh, add_texture(face, show_albedo(albedo, texture)))
+    write_png(panel, draw_maps_panel(texture, colour, face))
     return files
 
 
-ENDS = ("_maps.npz", "_melanin.png", "_hemoglobin.png", "_face.obj", "_panel.png")
-
-
-def textured(face: Mesh, texture: UInt8[np.ndarray, "h w 3"]) -> Mesh:
-    """The mesh with a picture over its texture coordinates."""
+def add_texture(face: Mesh, texture: UInt8[np.ndarray, "h w 3"]) -> Mesh:
+    """Put a picture over the texture coordinates of a mesh."""
     return Mesh(face.vertices, face.triangles, face.uv, face.uv_triangles, texture, face.name)
 
 
 def write_fraction(path: Path, texture: SkinTexture, name: str) -> None:
-    """A map as 16-bit PNG in which fraction = scale * pixel; its text says the scale."""
+    """Write a map to a 16-bit PNG with fraction = scale * pixel; its text gives the scale."""
     values = np.where(texture.mask, getattr(texture, name), 0)
     scale = float(values.max()) / _LEVELS or 1.0
     pixels = np.rint(values / scale).astype(np.uint16)
@@ -56,50 +56,55 @@ def write_fraction(path: Path, texture: SkinTexture, name: str) -> None:
     write_png(path, pixels, note)
 
 
-def shown(
+def show_albedo(
     albedo: Float32[np.ndarray, "size size 3"], texture: SkinTexture
 ) -> UInt8[np.ndarray, "size size 3"]:
-    """An albedo as uint8 sRGB, blank where nothing is known."""
+    """Convert an albedo to uint8 sRGB, blank where it is unknown."""
     colours = to_uint8(linear_to_srgb(albedo))
     return np.where(texture.mask[..., None], colours, np.array(BLANK, np.uint8))
 
 
-def covered(
+def fill_albedo(
     albedo: Float32[np.ndarray, "size size 3"], texture: SkinTexture
 ) -> Float32[np.ndarray, "size size 3"]:
-    """An albedo to render with: plaster where nothing is known."""
-    return np.where(texture.mask[..., None], albedo, np.float32(UNKNOWN))
+    """Fill the unknown texels of an albedo with grey, to render it."""
+    return np.where(texture.mask[..., None], albedo, np.float32(_UNKNOWN_ALBEDO))
 
 
-def maps_panel(texture: SkinTexture, colour: SkinColour, face: Mesh) -> UInt8[np.ndarray, "h w 3"]:
-    """Texture and maps above; the face relit, flushed and tanned below (Figures 4 and 6)."""
+def draw_maps_panel(
+    texture: SkinTexture, colour: SkinColour, face: Mesh
+) -> UInt8[np.ndarray, "h w 3"]:
+    """Draw texture and maps above, and the face relit, flushed and tanned below.
+
+    They are in the manner of Figures 4 and 6 of Alotaibi & Smith 2017.
+    """
     relight = RelightSettings(size=TILE)
-    flushed = edit_texture(texture, PigmentEdit(), PigmentEdit(FLUSH))
-    tanned = edit_texture(texture, PigmentEdit(TAN), PigmentEdit())
+    flushed = edit_texture(texture, PigmentEdit(), PigmentEdit(_FLUSH))
+    tanned = edit_texture(texture, PigmentEdit(_TAN), PigmentEdit())
     faces = {
         "relit": texture,
-        f"hemoglobin x {FLUSH:g}": flushed,
-        f"melanin x {TAN:g}": tanned,
+        f"hemoglobin x {_FLUSH:g}": flushed,
+        f"melanin x {_TAN:g}": tanned,
     }
     plain = SkinTexture(
         texture.f_mel, texture.f_blood, np.zeros_like(texture.offset), texture.mask, texture.name
     )
     tiles = [
-        draw_picture("texture", shown(texture.albedo(colour), texture)),
-        *pigment_tiles(texture),
-        draw_picture("skin without offset", shown(plain.albedo(colour), texture)),
+        draw_picture("texture", show_albedo(texture.albedo(colour), texture)),
+        *draw_pigments(texture),
+        draw_picture("skin without offset", show_albedo(plain.albedo(colour), texture)),
         *(
-            draw_picture(name, relight.picture(face, covered(one.albedo(colour), one)))
+            draw_picture(name, relight.render(face, fill_albedo(one.albedo(colour), one)))
             for name, one in faces.items()
         ),
     ]
     return draw_grid(tiles, 4)
 
 
-def pigment_tiles(
+def draw_pigments(
     texture: SkinTexture, tops: tuple[float | None, float | None] = (None, None)
 ) -> list[Image.Image]:
-    """Tiles of melanin and hemoglobin."""
+    """Draw tiles of melanin and hemoglobin."""
     mask = texture.mask.astype(np.float64)
     return [
         draw_pigment_map("melanin", texture.f_mel, mask, tops[0]),

@@ -22,24 +22,27 @@ from skinnet.files import write_atomically
 from skinnet.images.srgb import linear_to_srgb, to_uint8
 from skinnet.inference.panel import BLANK, draw_grid, draw_picture, draw_pigment_map, round_up
 
-Renderer = Callable[[Float32[np.ndarray, "size size 3"]], UInt8[np.ndarray, "height width 3"]]
-"""A picture, uint8 sRGB, of a linear RGB albedo: of the mean shape that wears it, for instance."""
+AlbedoRenderer = Callable[[Float32[np.ndarray, "size size 3"]], UInt8[np.ndarray, "height width 3"]]
+"""Renders a linear RGB albedo as uint8 sRGB, on the mean shape for instance."""
 
 Line = tuple[Int[np.ndarray, "counts"], Float[np.ndarray, "counts"]]
 
 
-def write_measures(path: Path, measures: Sequence[Measures]) -> None:
-    """Compactness, generalisation and specificity of some models as a PNG (Figure 8).
+def plot_measures(path: Path, measures: Sequence[Measures]) -> None:
+    """Plot compactness, generalisation and specificity of models to a PNG file.
 
     For a joint model the measures of shape, in mm, are added.
+
+    Source:
+        Figure 8 of Alotaibi & Smith 2017.
     """
     shapes = any(found.shape_generalisation is not None for found in measures)
     figure = Figure(figsize=(15.5 if shapes else 10.5, 8.4), layout="constrained")
     FigureCanvasAgg(figure)
     axes = figure.subplots(2, 3 if shapes else 2)
     share = "cumulative variance, %"
-    _draw(axes[0, 0], measures, _compactness, "(a) compactness in own features", share)
-    _draw(axes[0, 1], measures, _in_colour, "(b) compactness in linear RGB", share)
+    _plot(axes[0, 0], measures, _compactness, "(a) compactness in own features", share)
+    _plot(axes[0, 1], measures, _in_colour, "(b) compactness in linear RGB", share)
     error, distance = "RMS error left out", "RMS to the nearest subject"
     for axis, field, title, label in (
         (axes[1, 0], "generalisation", "(c) generalisation", f"{error}, linear RGB"),
@@ -47,7 +50,7 @@ def write_measures(path: Path, measures: Sequence[Measures]) -> None:
         (axes[0, -1], "shape_generalisation", "(e) generalisation of shape", f"{error}, mm"),
         (axes[1, -1], "shape_specificity", "(f) specificity of shape", f"{distance}, mm"),
     )[: 4 if shapes else 2]:
-        _draw(axis, measures, partial(_mean, field), title, label)
+        _plot(axis, measures, partial(_mean, field), title, label)
     with write_atomically(path) as part:
         figure.savefig(part, format="png", dpi=110)
 
@@ -65,7 +68,7 @@ def _mean(field: str, found: Measures) -> Line | None:
     return None if curve is None else (curve.counts, curve.mean)
 
 
-def _draw(
+def _plot(
     axis: Axes,
     measures: Sequence[Measures],
     line: Callable[[Measures], Line | None],
@@ -82,43 +85,46 @@ def _draw(
     axis.legend()
 
 
-def hybrid_sheet(
+def draw_hybrid(
     model: HybridModel,
     deviations: float = 3.0,
     components: int = 3,
-    renderer: Renderer | None = None,
+    renderer: AlbedoRenderer | None = None,
 ) -> UInt8[np.ndarray, "height width 3"]:
-    """The mean and the first components at -/+ some deviations, uint8 sRGB (Figure 7).
+    """Draw the mean and the first components at -/+ some deviations, uint8 sRGB.
 
-    Melanin above, hemoglobin in the middle, the resulting appearance below, by `renderer` or as a
+    Melanin stands above, hemoglobin in the middle, and the appearance below, rendered or as a
     texture.
+
+    Source:
+        Figure 7 of Alotaibi & Smith 2017.
     """
-    captions, betas = _corners(model, deviations, components)
+    captions, betas = _extreme_faces(model, deviations, components)
     textures = [model.texture(beta) for beta in betas]
-    melanin = _pigments("melanin", captions, [face.f_mel for face in textures], model.mask)
-    blood = _pigments("hemoglobin", captions, [face.f_blood for face in textures], model.mask)
+    melanin = _draw_pigment("melanin", captions, [face.f_mel for face in textures], model.mask)
+    blood = _draw_pigment("hemoglobin", captions, [face.f_blood for face in textures], model.mask)
     return draw_grid(
-        [*melanin, *blood, *_appearances(model, captions, betas, renderer)], len(betas)
+        [*melanin, *blood, *_draw_appearances(model, captions, betas, renderer)], len(betas)
     )
 
 
-def linear_sheet(
+def draw_linear(
     model: LinearModel,
     deviations: float = 3.0,
     components: int = 3,
-    renderer: Renderer | None = None,
+    renderer: AlbedoRenderer | None = None,
 ) -> UInt8[np.ndarray, "height width 3"]:
-    """The mean and the first components of a linear model at -/+ some deviations, uint8 sRGB."""
-    captions, betas = _corners(model, deviations, components)
-    return draw_grid(_appearances(model, captions, betas, renderer), len(betas))
+    """Draw the mean and the first components of a linear model, uint8 sRGB."""
+    captions, betas = _extreme_faces(model, deviations, components)
+    return draw_grid(_draw_appearances(model, captions, betas, renderer), len(betas))
 
 
-def _corners(
+def _extreme_faces(
     model: AppearanceModel, deviations: float, components: int
 ) -> tuple[list[str], list[Float[np.ndarray, "components"]]]:
     most = len(model.statistics.variances)
     if not 1 <= components <= most:
-        raise InputError(f"The model has {most} components; {components} cannot be shown.")
+        raise InputError(f"The model has {most} components; {components} cannot be drawn.")
     captions, betas = ["mean"], [np.zeros(most)]
     for index in range(components):
         for sign in (-1, 1):
@@ -129,13 +135,13 @@ def _corners(
     return captions, betas
 
 
-def _pigments(
+def _draw_pigment(
     name: str,
     captions: Sequence[str],
     maps: Sequence[Float32[np.ndarray, "size size"]],
     mask: Bool[np.ndarray, "size size"],
 ) -> list[Image.Image]:
-    """Tiles of one pigment on one scale, so that they can be compared."""
+    """Draw tiles of one pigment on one scale, so that they can be compared."""
     top = round_up(float(np.percentile([values[mask] for values in maps], 99)))
     share = mask.astype(np.float64)
     return [
@@ -144,21 +150,21 @@ def _pigments(
     ]
 
 
-def _appearances(
+def _draw_appearances(
     model: AppearanceModel,
     captions: Sequence[str],
     betas: Sequence[Float[np.ndarray, "components"]],
-    renderer: Renderer | None,
+    renderer: AlbedoRenderer | None,
 ) -> list[Image.Image]:
     pictures = []
     for caption, beta in zip(captions, betas, strict=True):
         albedo = model.reconstruct(beta)
-        shown = renderer(albedo) if renderer else _flat(albedo, model.mask)
-        pictures.append(draw_picture(caption, shown))
+        picture = renderer(albedo) if renderer else _draw_texture(albedo, model.mask)
+        pictures.append(draw_picture(caption, picture))
     return pictures
 
 
-def _flat(
+def _draw_texture(
     albedo: Float32[np.ndarray, "size size 3"], mask: Bool[np.ndarray, "size size"]
 ) -> UInt8[np.ndarray, "size size 3"]:
     blank = np.array(BLANK, np.uint8)

@@ -1,4 +1,4 @@
-"""What is already on disk, and what is said while work goes on."""
+"""The log, and the records by which finished work is found again."""
 
 import hashlib
 import json
@@ -12,12 +12,12 @@ from skinnet.files import write_text
 
 
 def log(text: str) -> None:
-    """A line of progress, on standard error, so that standard output holds results alone."""
+    """Print a line of progress to standard error; standard output holds results alone."""
     print(text, file=sys.stderr, flush=True)
 
 
-def digest(*parts: object) -> str:
-    """A short fingerprint of files' contents, settings and numbers, for `finished`."""
+def compute_fingerprint(*parts: object) -> str:
+    """Compute a short hash of the contents of files, of settings and of numbers."""
     sum_ = hashlib.sha256()
     for part in parts:
         if isinstance(part, Path):
@@ -30,8 +30,8 @@ def digest(*parts: object) -> str:
     return sum_.hexdigest()[:16]
 
 
-def finished(record: Path, fingerprint: str, files: list[Path]) -> dict[str, Any] | None:
-    """The record of a stage finished from the same inputs, if its files are all there."""
+def read_finished(record: Path, fingerprint: str, files: list[Path]) -> dict[str, Any] | None:
+    """Read the record of a stage if it was finished from the same inputs and has all its files."""
     if not all(file.is_file() for file in [record, *files]):
         return None
     try:
@@ -42,7 +42,7 @@ def finished(record: Path, fingerprint: str, files: list[Path]) -> dict[str, Any
 
 
 def write_record(path: Path, fingerprint: str, values: Mapping[str, Any]) -> dict[str, Any]:
-    """Write what a stage found, last of its files, with the fingerprint of its inputs."""
+    """Write the record of a stage, last of its files, with the fingerprint of its inputs."""
     record = {"inputs": fingerprint, **values}
     write_text(path, json.dumps(record, indent=2, allow_nan=False) + "\n")
     return record

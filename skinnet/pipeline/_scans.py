@@ -1,4 +1,4 @@
-"""A scan with what belongs to it: texture, landmarks, and the repairs that it needed."""
+"""A scan with its texture, its landmarks, and the repairs that it needed."""
 
 from collections.abc import Callable
 from dataclasses import dataclass, fields
@@ -12,29 +12,29 @@ from skinnet.errors import InputError
 from skinnet.mesh.mesh import Mesh
 from skinnet.mesh.mesh_file import read_mesh
 from skinnet.mesh.repair import repair_mesh
+from skinnet.pipeline._output import add_output, make_output_folder
 from skinnet.pipeline._progress import log
-from skinnet.pipeline.command import add_output, output_folder
 from skinnet.shape.landmarks import check_landmarks, read_landmarks
 from skinnet.shape.model import ShapeModel
 from skinnet.shape.model_formats import load_shape_model
 
-BESIDE = (".ljson", ".pp", "_landmarks.csv", "_landmarks.json")
-"""Ends of the names under which landmarks are looked for beside NAME.obj."""
+_LANDMARK_ENDS = (".ljson", ".pp", "_landmarks.csv", "_landmarks.json")
+"""Ends of the names of landmark files beside NAME.obj."""
 
 OUTPUT = "skinmaps"
-"""Folder beside a scan for what is made of it."""
+"""Folder beside a scan for the files of its fit and its maps."""
 
 
 @dataclass(frozen=True)
 class ScanOptions:
-    """What is read and where it goes.
+    """The shape model, and the files that belong to a scan.
 
     Args:
         model: shape model: ICT-FaceKit (folder or .npz), Basel Face Model (.mat, .h5), .npz of
             our own, a folder of registered meshes; by default the embedded procedural face.
         model_landmarks: .json of names and vertex numbers, for a model without landmarks.
         landmarks: points of the scan (.ljson, .csv, .json, .pp); by default NAME.ljson, NAME.pp,
-            NAME_landmarks.csv or .json beside it, and without any the face is found from ahead.
+            NAME_landmarks.csv or .json beside it; without any, the face is detected from the front.
         texture: the scan's picture, if the mesh does not name it.
     """
 
@@ -44,13 +44,13 @@ class ScanOptions:
     texture: Path | None = None
 
     def load_model(self) -> ShapeModel:
-        """The shape model."""
+        """Load the shape model."""
         return load_shape_model(self.model, self.model_landmarks)
 
 
 @dataclass(frozen=True)
 class Scan:
-    """A mesh fit to be worked on, its named points if known, and sentences on what was mended."""
+    """A checked mesh, its landmarks if known, and notes on its repairs."""
 
     path: Path
     mesh: Mesh
@@ -59,17 +59,20 @@ class Scan:
 
 
 def load_scan(path: Path, model: ShapeModel, options: ScanOptions, textured: bool = False) -> Scan:
-    """Read, check and mend a scan; landmarks are those given, or those beside it, or none.
+    """Read, check and repair a scan; its landmarks are those given, those beside it, or none.
 
-    Raises `InputError` with the file and the fault for whatever cannot be mended.
+    Raises:
+        InputError: if the scan cannot be repaired; names the file and the fault.
     """
     mesh = read_mesh(path, options.texture)
-    marks = options.landmarks or next((file for file in beside(path) if file.is_file()), None)
+    marks = options.landmarks or next(
+        (file for file in _landmark_files(path) if file.is_file()), None
+    )
     points = None if marks is None else read_landmarks(marks, mesh)
     checked = repair_mesh(mesh, textured)
     notes = list(checked.notes)
     if points is None:
-        notes.append(f"{path} has no landmarks; its face is looked for from ahead.")
+        notes.append(f"{path} has no landmarks; its face is detected from the front.")
     else:
         check_landmarks(points, model, checked.mesh, str(marks))
     for note in notes:
@@ -77,13 +80,14 @@ def load_scan(path: Path, model: ShapeModel, options: ScanOptions, textured: boo
     return Scan(path, checked.mesh, points, tuple(notes))
 
 
-def each_scan(
+def process_scans(
     paths: list[Path], options: ScanOptions, output: Path | None, action: Callable[[Path], object]
 ) -> int:
-    """Do something with every scan, report the bad ones and go on; 2 if any was bad, else 0.
+    """Process every scan and log the errors of bad ones; return 2 if any was bad, else 0.
 
-    Raises `InputError` where one file of landmarks or one texture is given for several scans, or
-    two scans would write the same files.
+    Raises:
+        InputError: if one file of landmarks or one texture is given for several scans, or two scans
+            would write the same files.
     """
     for name, one in (("landmarks", options.landmarks), ("texture", options.texture)):
         if one is not None and len(paths) > 1:
@@ -107,23 +111,23 @@ def each_scan(
     return code
 
 
-def beside(path: Path) -> list[Path]:
-    """Where the landmarks of a scan may lie."""
-    return [path.with_name(path.stem + end) for end in BESIDE]
+def _landmark_files(path: Path) -> list[Path]:
+    """List the files that may hold the landmarks of a scan."""
+    return [path.with_name(path.stem + end) for end in _LANDMARK_ENDS]
 
 
-def place(scan: Path, output: Path | None) -> Path:
-    """Where the files of a scan go, without their ends: FOLDER/NAME."""
-    return output_folder(output or scan.parent / OUTPUT) / scan.stem
+def stem_of_output(scan: Path, output: Path | None) -> Path:
+    """Make the output folder; the names of a scan's files begin with FOLDER/NAME."""
+    return make_output_folder(output or scan.parent / OUTPUT) / scan.stem
 
 
 def add_scan_arguments(parser: ArgumentParser) -> None:
-    """The scans, what belongs to them, and where their files go."""
+    """Add the options for scans, the files that belong to them, and the output folder."""
     parser.add_argument("scan", nargs="+", type=Path, help="Meshes: OBJ, PLY, glTF, GLB or STL.")
     parser.add_class_arguments(ScanOptions)
     add_output(parser, "skinmaps beside the scan")
 
 
-def scan_options(config: Namespace) -> ScanOptions:
-    """The options that `add_scan_arguments` added."""
+def collect_options(config: Namespace) -> ScanOptions:
+    """Collect the options that `add_scan_arguments` added."""
     return ScanOptions(**{one.name: config[one.name] for one in fields(ScanOptions)})

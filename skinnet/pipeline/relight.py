@@ -1,4 +1,4 @@
-"""How a face is lit and seen when a command renders it."""
+"""Lights and camera of the faces that a command renders."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -17,20 +17,28 @@ Direction = tuple[float, float, float]
 
 @dataclass(frozen=True)
 class RelightSettings:
-    """Lights and camera.
+    """Lights and camera of a rendered face.
 
     Args:
-        lamps: of each distant lamp the direction to it (x to the face's left, y up, z forward).
-        strengths: of each lamp the radiance of a white surface that faces it.
-        width: angle in degrees that the lamps are across; 0 gives hard shadows.
+        lamps: direction to each distant lamp (x to the face's left, y up, z forward).
+        strengths: radiance of a white surface that faces the lamp, for each lamp.
+        width: angular diameter of the lamps in degrees; 0 gives hard shadows.
         above: radiance of the sky straight above.
         below: radiance from straight below.
-        harmonics: nine spherical-harmonic coefficients of grey light in place of the sky.
+        harmonics: nine spherical-harmonic coefficients of grey light that replaces the sky.
         shadows: whether the face casts shadows on itself.
         gloss: whether it has highlights.
-        turn: angle in degrees by which the camera goes around to the face's left.
-        tilt: angle in degrees by which it goes up.
+        yaw: angle in degrees by which the camera moves around to the face's left.
+        pitch: angle in degrees by which it moves up.
         size: pixels along a side of the picture.
+
+    Raises:
+        InputError: if the strengths do not match the lamps, the harmonics are not nine, or the size
+            is out of range.
+
+    Example:
+        >>> len(RelightSettings(lamps=((0.0, 0.0, 1.0),), strengths=(1.0,)).lights())
+        2
     """
 
     lamps: tuple[Direction, ...] = ((-0.45, 0.55, 0.75),)
@@ -41,8 +49,8 @@ class RelightSettings:
     harmonics: tuple[float, ...] | None = None
     shadows: bool = True
     gloss: bool = True
-    turn: float = 0.0
-    tilt: float = 0.0
+    yaw: float = 0.0
+    pitch: float = 0.0
     size: int = 600
 
     def __post_init__(self) -> None:
@@ -59,7 +67,7 @@ class RelightSettings:
             raise InputError(f"size is a number of pixels from 16 to 8192; got {self.size}.")
 
     def lights(self) -> Sequence[Light]:
-        """The lamps and the sky."""
+        """Make the lamps and the sky."""
         lamps = [
             DirectionalLight(direction, strength, self.width)
             for direction, strength in zip(self.lamps, self.strengths, strict=True)
@@ -68,11 +76,19 @@ class RelightSettings:
             return [*lamps, SphericalHarmonics(np.array(self.harmonics))]
         return [*lamps, SphericalHarmonics.sky((self.above,) * 3, (self.below,) * 3)]
 
-    def picture(
+    def render(
         self, mesh: Mesh, albedo: Float32[np.ndarray, "size size 3"]
     ) -> UInt8[np.ndarray, "h w 3"]:
-        """A face with a linear albedo texture, uint8 sRGB."""
-        view = frame_face(mesh.vertices, (self.size, self.size), self.turn, self.tilt)
+        """Render a face.
+
+        Args:
+            mesh: the face, upright, with texture coordinates; it looks along +z.
+            albedo: linear RGB over the texture coordinates.
+
+        Returns:
+            The picture, uint8 sRGB.
+        """
+        view = frame_face(mesh.vertices, (self.size, self.size), self.yaw, self.pitch)
         gloss = SKIN_SPECULAR if self.gloss else 0.0
         grey = (0.75, 0.75, 0.75)
         return render(mesh, albedo, self.lights(), view, 2, self.shadows, gloss, background=grey)

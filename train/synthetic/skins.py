@@ -20,7 +20,7 @@ from scipy.ndimage import binary_fill_holes, distance_transform_edt
 
 from skinnet.appearance.hybrid import HybridModel
 from skinnet.errors import InputError
-from skinnet.pipeline._maps import embedded
+from skinnet.pipeline.texture_space import embed_model
 from skinnet.shape import compute_chart_angles, load_shape_model
 from train.fitted import shrunk
 from train.synthetic.face_painting import beard
@@ -189,7 +189,7 @@ def procedural_place(own_uv: bool = False) -> Place:
     By default that is `skinnet maps`' embedding of the face; with `own_uv` it is the chart itself.
     """
     model = load_shape_model()
-    space = embedded(model, own_uv)
+    space = embed_model(model, own_uv)
     place = LinearNDInterpolator(model.uv, space.uv)
     axes = (np.linspace(0, 1, n) for n in CHART[::-1])
     u, v = np.meshgrid(*axes)

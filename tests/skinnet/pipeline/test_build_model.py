@@ -90,17 +90,17 @@ def test_too_few_subjects_are_refused(maps: Path, tmp_path: Path, refused: Refus
 def test_an_interrupted_build_goes_on(
     maps: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    from skinnet.pipeline import _build_model
+    from skinnet.pipeline import _model_inputs
 
     command = ["build-model", str(maps), "-o", str(tmp_path), "--model.samples=3"]
-    whole = _build_model._texture
+    whole = _model_inputs._read_texture
 
     def broken(file: Path) -> object:
         if file.name.startswith("c"):
             raise KeyboardInterrupt
         return whole(file)
 
-    monkeypatch.setattr(_build_model, "_texture", broken)
+    monkeypatch.setattr(_model_inputs, "_read_texture", broken)
     assert main(command) == 130
     monkeypatch.undo()
     capsys.readouterr()

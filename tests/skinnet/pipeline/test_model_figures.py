@@ -15,7 +15,7 @@ from skinnet.appearance.measures import Measures
 from skinnet.appearance.stack import SubjectStack
 from skinnet.errors import InputError
 from skinnet.inference import TILE
-from skinnet.pipeline._model_figures import hybrid_sheet, linear_sheet, write_measures
+from skinnet.pipeline._model_figures import draw_hybrid, draw_linear, plot_measures
 
 
 def measures(name: str, shape: bool) -> Measures:
@@ -28,7 +28,7 @@ def measures(name: str, shape: bool) -> Measures:
 @pytest.mark.parametrize("shape", [True, False])
 def test_curves_are_written_without_pyplot(tmp_path: Path, shape: bool) -> None:
     path = tmp_path / "measures.png"
-    write_measures(path, [measures("hybrid", False), measures("other", shape)])
+    plot_measures(path, [measures("hybrid", False), measures("other", shape)])
     with Image.open(path) as picture:
         assert picture.format == "PNG" and (picture.width > 1.7 * picture.height) == shape
     assert [file.name for file in tmp_path.iterdir()] == ["measures.png"]
@@ -46,8 +46,8 @@ def test_no_global_state_of_matplotlib_is_touched() -> None:
 
 def test_the_hybrid_has_three_rows(stack: SubjectStack) -> None:
     model = HybridModel.fit(stack)
-    picture = hybrid_sheet(model, deviations=2.0, components=2)
-    one = linear_sheet(LinearModel.fit(stack), deviations=2.0, components=2)
+    picture = draw_hybrid(model, deviations=2.0, components=2)
+    one = draw_linear(LinearModel.fit(stack), deviations=2.0, components=2)
     assert picture.dtype == np.uint8 and picture.shape[1] == one.shape[1] > 5 * TILE
     assert 2.8 < picture.shape[0] / one.shape[0] <= 3
 
@@ -60,7 +60,7 @@ def test_the_appearance_can_be_rendered(stack: SubjectStack) -> None:
         return np.full((10, 30, 3), 200, np.uint8)
 
     model = HybridModel.fit(stack)
-    hybrid_sheet(model, components=1, renderer=renderer)
+    draw_hybrid(model, components=1, renderer=renderer)
     assert np.array_equal(seen[0], model.reconstruct(np.zeros(6))) and len(seen) == 3
     beta = np.eye(6)[0] * -3 * np.sqrt(model.statistics.variances)
     assert np.allclose(seen[1], model.reconstruct(beta))
@@ -69,4 +69,4 @@ def test_the_appearance_can_be_rendered(stack: SubjectStack) -> None:
 @pytest.mark.parametrize("components", [0, 7])
 def test_components_that_are_not_there_are_refused(stack: SubjectStack, components: int) -> None:
     with pytest.raises(InputError, match=f"The model has 6 components; {components} cannot"):
-        hybrid_sheet(HybridModel.fit(stack), components=components)
+        draw_hybrid(HybridModel.fit(stack), components=components)
