@@ -19,18 +19,17 @@ import numpy as np
 import torch
 from jaxtyping import Bool, Float
 from scipy.interpolate import CubicSpline
-from skinnet.shape.default import default_model
 
 from benchmarks.report import Results, main
 from examples.lightstage import CAMERA, FILTER, LIGHT, person
-from skinnet import calibration
+from skinnet import InputError, calibration
 from skinnet.appearance.colour import SkinColour
 from skinnet.calibration.calibrate import calibrate
-from skinnet.errors import InputError
-from skinnet.images.photograph import linear_to_srgb, srgb_to_linear, to_uint8
+from skinnet.images import linear_to_srgb, srgb_to_linear, to_uint8
 from skinnet.physics import SkinLookup, SkinReflectance, load_spectrum_to_srgb
 from skinnet.pipeline.calibrate import ColourSettings
-from skinnet.texture.warp import TextureSpace
+from skinnet.shape import load_shape_model
+from skinnet.texture import TextureSpace
 
 MIX = np.array([[0.8, 0.05, 0.01], [0.03, 0.86, 0.04], [0.01, 0.06, 0.92]])
 BRIGHT = np.array([[1.6, -0.05, 0.03], [0.02, 1.3, -0.04], [-0.005, 0.01, 1.1]])
@@ -91,7 +90,7 @@ def known_colours(
 @cache
 def chart(texels: int) -> Bool[np.ndarray, "texels texels"]:
     """The texels of the face model's own texture coordinates."""
-    model = default_model()
+    model = load_shape_model()
     assert model.uv is not None and model.uv_triangles is not None
     return TextureSpace(model.uv, model.uv_triangles, texels).mask
 
