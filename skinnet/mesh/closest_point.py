@@ -45,6 +45,7 @@ class TriangleTree:
 
     Example:
         >>> import numpy as np
+        >>> from skinnet.mesh import TriangleTree
         >>> tree = TriangleTree(np.eye(3), np.array([[0, 1, 2]]))
         >>> tree.query(np.array([[0.0, 0.0, 0.0], [3.0, 0.0, 0.0]])).distance.round(3)
         array([0.577, 2.   ])

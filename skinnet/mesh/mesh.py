@@ -23,6 +23,7 @@ class Mesh:
 
     Example:
         >>> import numpy as np
+        >>> from skinnet.mesh import Mesh
         >>> Mesh(np.eye(3), np.array([[0, 1, 2]]), name="triangle").vertices.shape
         (3, 3)
     """

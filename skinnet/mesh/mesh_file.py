@@ -38,6 +38,7 @@ def read_mesh(path: Path, texture: Path | None = None) -> Mesh:
     Example:
         >>> from pathlib import Path
         >>> from tempfile import TemporaryDirectory
+        >>> from skinnet.mesh import read_mesh
         >>> with TemporaryDirectory() as folder:
         ...     path = Path(folder) / "triangle.obj"
         ...     _ = path.write_text("v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n")
@@ -71,6 +72,7 @@ def write_mesh(path: Path, mesh: Mesh) -> None:
         >>> import numpy as np
         >>> from pathlib import Path
         >>> from tempfile import TemporaryDirectory
+        >>> from skinnet.mesh import Mesh, write_mesh
         >>> with TemporaryDirectory() as folder:
         ...     write_mesh(Path(folder) / "a.obj", Mesh(np.eye(3), np.array([[0, 1, 2]])))
         ...     print((Path(folder) / "a.obj").read_text())

@@ -51,6 +51,7 @@ def rasterise(corners: Float[np.ndarray, "triangles 3 2"], size: int) -> Raster:
 
     Example:
         >>> import numpy as np
+        >>> from skinnet.mesh import rasterise
         >>> lower_left = np.array([[[0.0, 0.0], [1.0, 0.0], [0.0, 1.0]]])
         >>> rasterise(lower_left, 3).triangle
         array([[ 0, -1, -1],

@@ -38,14 +38,24 @@ _FaceMask = Bool[np.ndarray, "triangles"]
 
 
 class RepairedMesh(NamedTuple):
-    """A repaired mesh, and a sentence for each change."""
+    """A repaired mesh and what was changed.
+
+    Attributes:
+        mesh: The mesh.
+        notes: A sentence for each change; empty if nothing was wrong.
+    """
 
     mesh: Mesh
     notes: list[str]
 
 
 class LengthUnit(NamedTuple):
-    """The number of millimetres in a mesh's unit, and a sentence about it."""
+    """The unit of a mesh.
+
+    Attributes:
+        millimetres: Length of the unit.
+        note: A sentence that names the unit and the mesh's size.
+    """
 
     millimetres: float
     note: str
@@ -73,6 +83,7 @@ def repair_mesh(mesh: Mesh, need_texture: bool = False) -> RepairedMesh:
 
     Example:
         >>> import numpy as np
+        >>> from skinnet.mesh import Mesh, repair_mesh
         >>> vertices = np.array([[0.0, 0, 0], [1, 0, 0], [0, 1, 0], [1, 1, -0.5]])
         >>> triangles = np.array([[0, 1, 2], [1, 3, 2], [2, 1, 3]])
         >>> repaired, notes = repair_mesh(Mesh(vertices, triangles, name="scan.obj"))
@@ -113,6 +124,7 @@ def guess_length_unit(
 
     Example:
         >>> import numpy as np
+        >>> from skinnet.mesh import guess_length_unit
         >>> guess_length_unit(np.array([[0.0, 0, 0], [0, 0.2, 0]]), "scan.obj")
         LengthUnit(millimetres=1000.0, note='scan.obj is taken to be in metres: it is 200 mm long.')
     """

@@ -48,19 +48,16 @@ class DirectionalLight:
         angle: Degrees that the light is across; above 0 shadows are soft.
         rays: Shadow rays per pixel for a soft shadow.
 
-    Raises:
-        InputError: When it is used, if `direction` has no length or is not finite.
-
     Example:
         >>> import numpy as np
         >>> from skinnet.mesh import Mesh
-        >>> from skinnet.render import frame_face, trace_geometry
+        >>> from skinnet.render import DirectionalLight, frame_face, trace_geometry
         >>> square = np.array([[-1.0, -1, 0], [1, -1, 0], [1, 1, 0], [-1, 1, 0]])
         >>> mesh = Mesh(square, np.array([[0, 1, 2], [0, 2, 3]]))
         >>> buffers = trace_geometry(mesh, frame_face(square, (8, 8)))
-        >>> irradiance, direction = DirectionalLight((0, 3, 4), 0.5).illuminate(buffers, True)
+        >>> irradiance, direction = DirectionalLight((0.0, 3.0, 4.0)).illuminate(buffers, True)
         >>> irradiance[0].round(3), direction
-        (array([0.4, 0.4, 0.4]), array([0. , 0.6, 0.8]))
+        (array([0.8, 0.8, 0.8]), array([0. , 0.6, 0.8]))
     """
 
     direction: tuple[float, float, float] | Float[np.ndarray, "3"]
@@ -69,7 +66,18 @@ class DirectionalLight:
     rays: int = 32
 
     def illuminate(self, buffers: GeometryBuffers, shadows: bool) -> _Illumination:
-        """Compute colour max(n . l, 0), times the visible share of the light with `shadows`."""
+        """Compute the irradiance over pi at each hit, colour max(n . l, 0).
+
+        Args:
+            buffers: The surface.
+            shadows: Whether to multiply it by the visible share of the light.
+
+        Returns:
+            Irradiance over pi, linear sRGB, and the unit vector to the light.
+
+        Raises:
+            InputError: For a direction without length, or that is not finite.
+        """
         direction = np.asarray(self.direction, np.float64)
         if not (np.isfinite(direction).all() and direction.any()):
             raise InputError(
@@ -100,6 +108,7 @@ class SphericalHarmonics:
 
     Example:
         >>> import numpy as np
+        >>> from skinnet.render import SphericalHarmonics
         >>> sky = SphericalHarmonics.sky((1.0, 1.0, 1.0), (0.0, 0.0, 0.0))
         >>> sky.irradiance(np.array([[0.0, 1, 0], [1, 0, 0]])).round(3)
         array([[0.833, 0.833, 0.833],
@@ -112,7 +121,14 @@ class SphericalHarmonics:
     def project(
         cls, radiance: Callable[[Float[np.ndarray, "points 3"]], Float[np.ndarray, "points 3"]]
     ) -> "SphericalHarmonics":
-        """Project any radiance, a function of unit directions, onto the nine harmonics."""
+        """Project any radiance onto the nine harmonics.
+
+        Args:
+            radiance: Function of unit directions that gives linear sRGB.
+
+        Returns:
+            The light.
+        """
         height, weight = np.polynomial.legendre.leggauss(64)
         angle = np.arange(128) * (2 * np.pi / 128)
         y, azimuth = np.repeat(height, 128), np.tile(angle, 64)
@@ -125,7 +141,15 @@ class SphericalHarmonics:
     def sky(
         cls, above: tuple[float, float, float], below: tuple[float, float, float]
     ) -> "SphericalHarmonics":
-        """Make a sky whose radiance changes linearly with height, from `below` to `above`."""
+        """Make a sky whose radiance changes linearly with height.
+
+        Args:
+            above: Radiance from straight above (+y), linear sRGB.
+            below: Radiance from straight below.
+
+        Returns:
+            The light.
+        """
         top, bottom = np.array(above, np.float64), np.array(below, np.float64)
         coefficients = np.zeros((9, 3))
         coefficients[0] = np.sqrt(4 * np.pi) * (top + bottom) / 2
@@ -133,10 +157,14 @@ class SphericalHarmonics:
         return cls(coefficients)
 
     def irradiance(self, normals: Float[np.ndarray, "points 3"]) -> Float[np.ndarray, "points 3"]:
-        """Compute the irradiance over pi of surfaces with these unit normals.
+        """Compute the irradiance of surfaces in the open.
 
-        Nine coefficients can describe a light whose irradiance is negative somewhere; it is clipped
-        to 0 there.
+        Args:
+            normals: Unit normals of the surfaces.
+
+        Returns:
+            Irradiance over pi, linear sRGB. Nine coefficients can describe a light whose
+            irradiance is negative somewhere; it is clipped to 0 there.
         """
         coefficients = np.broadcast_to(self.coefficients.reshape(9, -1), (9, 3))
         convolved: Float[np.ndarray, "points 3"] = (
@@ -145,6 +173,14 @@ class SphericalHarmonics:
         return convolved.clip(0)
 
     def illuminate(self, buffers: GeometryBuffers, shadows: bool) -> _Illumination:
-        """Compute the irradiance over pi, times the sky visibility with `shadows`."""
+        """Compute the irradiance over pi at each hit.
+
+        Args:
+            buffers: The surface.
+            shadows: Whether to multiply it by the sky visibility.
+
+        Returns:
+            Irradiance over pi, linear sRGB, and None, since the light has no single direction.
+        """
         irradiance = self.irradiance(buffers.normal)
         return irradiance * buffers.sky_visibility()[:, None] if shadows else irradiance, None

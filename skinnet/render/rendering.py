@@ -48,7 +48,7 @@ def render(
     Example:
         >>> import numpy as np
         >>> from skinnet.mesh import Mesh
-        >>> from skinnet.render import SphericalHarmonics, frame_face
+        >>> from skinnet.render import SphericalHarmonics, frame_face, render
         >>> square = np.array([[-1.0, -1, 0], [1, -1, 0], [1, 1, 0], [-1, 1, 0]])
         >>> mesh = Mesh(square, np.array([[0, 1, 2], [0, 2, 3]]))
         >>> lights = [SphericalHarmonics.sky((1.0, 1.0, 1.0), (1.0, 1.0, 1.0))]

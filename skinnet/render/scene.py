@@ -41,6 +41,7 @@ class Scene:
     Example:
         >>> import numpy as np
         >>> from skinnet.mesh import Mesh
+        >>> from skinnet.render import Scene
         >>> scene = Scene(Mesh(np.eye(3), np.array([[0, 1, 2]])))
         >>> triangle, barycentric = scene.intersect(np.zeros((1, 3)), np.ones((1, 3)))
         >>> triangle, barycentric.round(3)
@@ -120,7 +121,14 @@ class Scene:
         return 1 - blocked / _SKY_RAYS
 
     def to_local(self, points: Float[np.ndarray, "points 3"]) -> Float[np.ndarray, "points 3"]:
-        """Transform points to Embree's frame: centred, in units of the extent, single precision."""
+        """Transform points to Embree's frame: centred, in units of the extent, single precision.
+
+        Args:
+            points: Positions in the mesh's unit.
+
+        Returns:
+            The points as float32.
+        """
         return np.ascontiguousarray((points - self.middle) / (self.extent or 1), np.float32)
 
 

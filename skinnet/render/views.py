@@ -23,11 +23,25 @@ class View(Protocol):
         ...
 
     def rays(self, samples: int) -> _Rays:
-        """Make `samples` x `samples` rays, evenly spread over each pixel."""
+        """Make `samples` x `samples` rays, evenly spread over each pixel.
+
+        Args:
+            samples: Rays along either side of a pixel.
+
+        Returns:
+            Origins and unit directions, row by row from the top left of the picture.
+        """
         ...
 
     def project(self, points: Float[np.ndarray, "points 3"]) -> Float[np.ndarray, "points 2"]:
-        """Project points to column and row; (0, 0) is the upper left corner of the picture."""
+        """Project points to pixels.
+
+        Args:
+            points: Positions in the world.
+
+        Returns:
+            Column and row in pixels; (0, 0) is the upper left corner of the picture.
+        """
         ...
 
 
@@ -43,6 +57,7 @@ class PerspectiveView:
 
     Example:
         >>> import numpy as np
+        >>> from skinnet.render import PerspectiveView
         >>> view = PerspectiveView((20, 30), np.array([0.0, 0.0, 5.0]), np.eye(3), focal=10.0)
         >>> view.project(np.array([[1.0, 1.0, 0.0]]))
         array([[17.,  8.]])
@@ -54,14 +69,28 @@ class PerspectiveView:
     focal: float
 
     def rays(self, samples: int) -> _Rays:
-        """Make `samples` x `samples` rays, evenly spread over each pixel."""
+        """Make `samples` x `samples` rays, evenly spread over each pixel.
+
+        Args:
+            samples: Rays along either side of a pixel.
+
+        Returns:
+            Origins and unit directions, row by row from the top left of the picture.
+        """
         x, y = _grid(self.size, samples)
         local = np.stack([x, y, np.full_like(x, -self.focal)], 1)
         local /= np.linalg.norm(local, axis=1, keepdims=True)
         return np.broadcast_to(self.eye, local.shape), local @ self.rotation
 
     def project(self, points: Float[np.ndarray, "points 3"]) -> Float[np.ndarray, "points 2"]:
-        """Project points in front of the view to column and row."""
+        """Project points in front of the view to pixels.
+
+        Args:
+            points: Positions in the world.
+
+        Returns:
+            Column and row in pixels; (0, 0) is the upper left corner of the picture.
+        """
         local = (points - self.eye) @ self.rotation.T
         return _pixels(self.size, local[:, :2] * (self.focal / -local[:, 2:]))
 
@@ -78,6 +107,7 @@ class OrthographicView:
 
     Example:
         >>> import numpy as np
+        >>> from skinnet.render import OrthographicView
         >>> view = OrthographicView((20, 30), np.array([0.0, 0.0, 5.0]), np.eye(3), scale=2.0)
         >>> view.project(np.array([[1.0, 1.0, 0.0]]))
         array([[17.,  8.]])
@@ -89,14 +119,28 @@ class OrthographicView:
     scale: float
 
     def rays(self, samples: int) -> _Rays:
-        """Make `samples` x `samples` rays, evenly spread over each pixel."""
+        """Make `samples` x `samples` rays, evenly spread over each pixel.
+
+        Args:
+            samples: Rays along either side of a pixel.
+
+        Returns:
+            Origins and unit directions, row by row from the top left of the picture.
+        """
         x, y = _grid(self.size, samples)
         local = np.stack([x, y, np.zeros_like(x)], 1) / self.scale
         origins = local @ self.rotation + self.eye
         return origins, np.broadcast_to(-self.rotation[2], origins.shape)
 
     def project(self, points: Float[np.ndarray, "points 3"]) -> Float[np.ndarray, "points 2"]:
-        """Project points to column and row."""
+        """Project points to pixels.
+
+        Args:
+            points: Positions in the world.
+
+        Returns:
+            Column and row in pixels; (0, 0) is the upper left corner of the picture.
+        """
         local = (points - self.eye) @ self.rotation.T
         return _pixels(self.size, local[:, :2] * self.scale)
 
@@ -127,6 +171,7 @@ def frame_face(
 
     Example:
         >>> import numpy as np
+        >>> from skinnet.render import frame_face
         >>> view = frame_face(np.array([[-70.0, -100, 0], [70, 100, 0]]), (200, 200), fill=0.9)
         >>> view.project(np.array([[0.0, 0, 0], [0, 100, 0]])).round(6)
         array([[100., 100.],

@@ -103,9 +103,10 @@ class GeometryBuffers:
         return offset
 
     def sky_visibility(self) -> Float[np.ndarray, "hits"]:
-        """Share of the cosine-weighted sky visible from each sample, between 0 and 1.
+        """Share of the cosine-weighted sky that is visible from each sample.
 
-        It is interpolated between vertices (`Scene.outer_sky_visibility`).
+        Returns:
+            From 0 to 1, interpolated between vertices (`Scene.outer_sky_visibility`).
         """
         corners = self.scene.mesh.triangles[self.triangle]
         visibility = (self.scene.outer_sky_visibility[corners] * self.barycentric).sum(1)
@@ -131,7 +132,7 @@ def trace_geometry(mesh: Mesh | Scene, view: View, samples: int = 1) -> Geometry
     Example:
         >>> import numpy as np
         >>> from skinnet.mesh import Mesh
-        >>> from skinnet.render import frame_face
+        >>> from skinnet.render import frame_face, trace_geometry
         >>> square = np.array([[-1.0, -1, 0], [1, -1, 0], [1, 1, 0], [-1, 1, 0]])
         >>> mesh = Mesh(square, np.array([[0, 1, 2], [0, 2, 3]]))
         >>> buffers = trace_geometry(mesh, frame_face(square, (8, 8), fill=0.5))
