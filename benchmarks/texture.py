@@ -95,7 +95,7 @@ def by_ours(
     uv, coordinates = ((pixels * flip[0] + flip[1]) / size for pixels in (places, source))
     space = TextureSpace(uv, triangles, size)
     everywhere = np.ones(len(triangles), bool)
-    return warp_texture(space, coordinates[triangles], everywhere, picture, most_samples=1)
+    return warp_texture(space, coordinates[triangles], everywhere, picture, max_samples=1)
 
 
 def against_skimage(points: int, size: int) -> Results:

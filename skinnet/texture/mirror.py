@@ -1,22 +1,33 @@
-"""Which vertices of a symmetric face are mirror images of each other."""
+"""Mirror symmetry of a face: which vertices are images of each other."""
 
 import numpy as np
 from jaxtyping import Float, Int
 from scipy.spatial import cKDTree
 
-from skinnet.mesh._topology import boundary, edge_keys, half_edges
-
 TOLERANCE = 1e-3
-"""How far from its mirror image a vertex may lie, as a share of the largest extent."""
+"""Largest distance of a vertex from its mirror image, as a share of the largest extent."""
 
 
 def find_mirror_vertices(
     vertices: Float[np.ndarray, "vertices 3"], tolerance: float = TOLERANCE
 ) -> Int[np.ndarray, "vertices"] | None:
-    """The mirror image of each vertex under x -> -x, or None if the mesh has no such symmetry.
+    """Find the mirror image of each vertex under x -> -x.
 
-    Every vertex must have a partner within `tolerance` times the largest extent and be its
-    partner's partner; vertices in the plane x = 0 are their own.
+    Args:
+        vertices: Vertices of a face whose plane of symmetry is x = 0.
+        tolerance: Largest distance between a mirrored vertex and its image, as a share of the
+        largest
+            extent.
+
+    Returns:
+        The index of each vertex' image, which is the vertex itself in the plane of symmetry; None
+        if the mesh is not symmetric.
+
+    Example:
+        >>> import numpy as np
+        >>> from skinnet.texture import find_mirror_vertices
+        >>> find_mirror_vertices(np.array([[-1.0, 0, 0], [0, 2, 0], [1, 0, 0]]))
+        array([2, 1, 0])
     """
     limit = tolerance * np.ptp(vertices, 0).max()
     found = cKDTree(vertices).query(vertices * [-1, 1, 1])
@@ -24,27 +35,3 @@ def find_mirror_vertices(
     if distance.max() > limit or (partner[partner] != np.arange(len(vertices))).any():
         return None
     return partner.astype(np.int64)
-
-
-def with_mirror_images(
-    triangles: Int[np.ndarray, "triangles 3"], mirror: Int[np.ndarray, "vertices"]
-) -> Int[np.ndarray, "more 3"]:
-    """Triangles followed by those mirror images that are missing in a notch of the boundary.
-
-    A model cut out of a head of quads by its vertices keeps half a quad on one side and not on the
-    other. Only images that fit between two edges of the boundary are added.
-    """
-    count = len(mirror)
-    while True:
-        edges = half_edges(triangles)
-        open_ = boundary(triangles)
-        keys = edge_keys(edges, count, directed=True)
-        rim = keys[open_.ravel()]
-        lone = open_ & ~np.isin(edge_keys(mirror[edges[:, ::-1]], count, True), rim).reshape(-1, 3)
-        images = mirror[triangles[lone.any(1)]][:, ::-1]
-        sides = half_edges(images)
-        new = ~np.isin(edge_keys(sides, count, True), keys).reshape(-1, 3).any(1)
-        joined = np.isin(edge_keys(sides[:, ::-1], count, True), rim).reshape(-1, 3).sum(1) == 2
-        if not (new & joined).any():
-            return triangles
-        triangles = np.concatenate([triangles, images[new & joined]])

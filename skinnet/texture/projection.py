@@ -1,4 +1,4 @@
-"""The texture of a scan carried over to a model fitted to it."""
+"""The texture of a scan, resampled into the texture space of a model fitted to it."""
 
 from typing import NamedTuple
 
@@ -16,138 +16,164 @@ from skinnet.mesh.sampling import sample_bilinear
 from skinnet.texture.warp import TextureSpace, WarpedTexture, warp_texture
 
 MAX_NORMAL_ANGLE = 60.0
-"""Degrees between the normals of model and scan from which a point is not the same one."""
+"""Largest angle in degrees between the normals of model and scan at corresponding points."""
 
-TORN = 1.5
-"""How many times longer in the scan's texture an edge may be than the scan's own triangles there
-would make it, before it counts as one that crosses a cut. Some 0.4 % of a real face's do."""
+CUT_RATIO = 1.5
+"""An edge crosses a cut of the scan's texture if it is this many times as long there as the scan's
+own triangles at its ends imply. About 0.4 % of a real face's edges do."""
 
 ON_EDGE = 1e-9
 """Barycentric coordinate below which a point lies on the opposite edge."""
 
 
-class _Places(NamedTuple):
-    """Where points of the model lie on the scan; meaningless where not `covered`."""
+class _ScanPositions(NamedTuple):
+    """Closest points on the scan; meaningless where not `covered`. `island` is the UV island."""
 
     covered: Bool[np.ndarray, "points"]
     position: Float[np.ndarray, "points 3"]
     uv: Float[np.ndarray, "points 2"]
-    chart: Int[np.ndarray, "points"]
+    island: Int[np.ndarray, "points"]
     density: Float[np.ndarray, "points"]
 
 
 def project_texture(
     space: TextureSpace,
-    fitted: Mesh,
+    model_mesh: Mesh,
     scan: Mesh,
-    limit: float,
-    normal_limit: float = MAX_NORMAL_ANGLE,
+    max_distance: float,
+    max_angle: float = MAX_NORMAL_ANGLE,
 ) -> WarpedTexture:
-    """The scan's texture in the model's space, linear sRGB, masked where the scan has none.
+    """Resample a scan's texture into the texture space of a model fitted to the scan.
 
-    Each vertex of `fitted`, whose triangles are those of `space` in the same order, takes the
-    texture coordinate of the scan's closest point (paper 4.2); inside a triangle they are
-    interpolated. A point is not covered if the closest one is farther than `limit` (in the scan's
-    unit), if the normals differ by more than `normal_limit` degrees, or if it lies on the scan's
-    open edge, beyond which nothing was measured. Triangles with a corner that is not covered, or
-    whose corners lie on different charts of the scan's texture or on both sides of a cut, are done
-    texel by texel, each with its own closest point and the same conditions; there one sample is
-    taken, not the mean over a texel's footprint.
+    Each vertex of the model takes the texture coordinates of the scan's closest point, and inside a
+    triangle they are interpolated. A point is covered if the closest point is near enough, has a
+    similar normal, and is not on the scan's boundary, beyond which nothing was measured. Triangles
+    with a corner that is not covered, or that a cut of the scan's texture crosses, are resampled
+    texel by texel, each with its own closest point, under the same conditions and with one sample
+    per texel.
 
-    Raises `InputError` for a scan without texture or texture coordinates, and for a fitted mesh
-    with other triangles than the texture space.
+    Args:
+        space: The model's texture space.
+        model_mesh: The fitted model, its triangles in the order of those of `space`.
+        scan: The scan, with texture coordinates and a texture.
+        max_distance: Largest distance between model and scan, in the scan's unit.
+        max_angle: Largest angle between their normals, in degrees.
+
+    Returns:
+        The texture in linear sRGB, and the mask of the texels that the scan covers.
+
+    Raises:
+        InputError: If the scan has no texture or texture coordinates, or the model's triangles are
+            not those of the texture space.
+
+    Source:
+        Section 4.2 of Alotaibi & Smith 2017.
+
+    Example:
+        >>> import numpy as np
+        >>> from skinnet.mesh import Mesh
+        >>> from skinnet.texture import TextureSpace, project_texture
+        >>> corners = np.array([[-1.0, -1, 0], [3, -1, 0], [-1, 3, 0]])
+        >>> triangle, uv = np.array([[0, 1, 2]]), np.array([[0.0, 0], [1, 0], [0, 1]])
+        >>> white = np.full((4, 4, 3), 255, np.uint8)
+        >>> scan = Mesh(corners, triangle, uv, triangle, white)
+        >>> model_mesh = Mesh(corners / 4, triangle, uv, triangle)
+        >>> space = TextureSpace(uv, triangle, 2)
+        >>> project_texture(space, model_mesh, scan, max_distance=0.1).image[..., 0]
+        array([[1., 0.],
+               [1., 1.]], dtype=float32)
     """
-    _check(space, fitted, scan)
-    source = _Scan(scan, limit, np.cos(np.deg2rad(normal_limit)))
-    normals = compute_vertex_normals(fitted.vertices, fitted.triangles)
-    places = source.places(fitted.vertices, normals)
-    coordinates = places.uv[fitted.triangles]
-    known = places.covered[fitted.triangles]
-    whole = known.all(1) & _untorn(places, fitted.triangles)
+    _check_textures(space, model_mesh, scan)
+    source = _TexturedScan(scan, max_distance, np.cos(np.deg2rad(max_angle)))
+    normals = compute_vertex_normals(model_mesh.vertices, model_mesh.triangles)
+    places = source.locate(model_mesh.vertices, normals)
+    coordinates = places.uv[model_mesh.triangles]
+    known = places.covered[model_mesh.triangles]
+    whole = known.all(1) & _find_whole(places, model_mesh.triangles)
     warped = warp_texture(space, coordinates, whole, source.texture)
-    rest = np.flatnonzero((known.any(1) & ~whole)[space.owner])
-    corners = np.concatenate([fitted.vertices, normals], 1)[fitted.triangles]
-    position, normal = np.split(space.at(corners, rest), 2, axis=1)
-    single = source.places(position, normalise(normal))
+    rest = np.flatnonzero((known.any(1) & ~whole)[space.texel_triangles])
+    corners = np.concatenate([model_mesh.vertices, normals], 1)[model_mesh.triangles]
+    position, normal = np.split(space.interpolate_texels(corners, rest), 2, axis=1)
+    single = source.locate(position, normalise(normal))
     row, column = (index[rest][single.covered] for index in np.nonzero(space.mask))
     warped.image[row, column] = sample_bilinear(source.texture, single.uv[single.covered])
     warped.mask[row, column] = True
     return warped
 
 
-class _Scan:
-    """A textured scan that is asked for closest points."""
+class _TexturedScan:
+    """A textured scan with a search structure for closest points."""
 
-    def __init__(self, scan: Mesh, limit: float, least_cosine: float):
+    def __init__(self, scan: Mesh, max_distance: float, min_cosine: float):
         assert scan.uv is not None and scan.uv_triangles is not None and scan.texture is not None
-        self.limit, self.least_cosine = limit, least_cosine
+        self.max_distance, self.min_cosine = max_distance, min_cosine
         self.triangles, self.uv_triangles = scan.triangles, scan.uv_triangles
         self.vertices, self.uv = scan.vertices, scan.uv
         self.texture = srgb_to_linear(scan.texture)
         self.normals = compute_vertex_normals(scan.vertices, scan.triangles)
         self.surface = TriangleTree(scan.vertices, scan.triangles)
-        charts = label_components(scan.uv_triangles, len(scan.uv))
-        self.chart = charts[scan.uv_triangles[:, 0]]
+        islands = label_components(scan.uv_triangles, len(scan.uv))
+        self.island = islands[scan.uv_triangles[:, 0]]
         welded = weld(scan.vertices)[scan.triangles]
-        self.open = boundary(welded)
-        self.open_vertices = np.isin(welded, welded[self.open])
-        self.open_vertices |= np.isin(welded, np.roll(welded, -1, 1)[self.open])
-        self.density = _density(scan.vertices[scan.triangles], scan.uv[scan.uv_triangles])
+        self.boundary = boundary(welded)
+        self.boundary_vertices = np.isin(welded, welded[self.boundary])
+        self.boundary_vertices |= np.isin(welded, np.roll(welded, -1, 1)[self.boundary])
+        self.density = _compute_density(scan.vertices[scan.triangles], scan.uv[scan.uv_triangles])
 
-    def places(
+    def locate(
         self, points: Float[np.ndarray, "points 3"], normals: Float[np.ndarray, "points 3"]
-    ) -> _Places:
-        """Closest points within the limit, and whether each shows the same piece of surface."""
-        closest = self.surface.query(points, self.limit)
+    ) -> _ScanPositions:
+        """Find the closest points, and whether each shows the same piece of surface."""
+        closest = self.surface.query(points, self.max_distance)
         triangle = closest.triangle
-        normal = normalise(_mean(closest, self.normals[self.triangles[triangle]]))
-        agrees = np.einsum("px,px->p", normal, normals) >= self.least_cosine
-        return _Places(
-            (triangle >= 0) & agrees & ~self._on_open_edge(closest),
-            _mean(closest, self.vertices[self.triangles[triangle]]),
-            _mean(closest, self.uv[self.uv_triangles[triangle]]),
-            self.chart[triangle],
+        normal = normalise(_interpolate(closest, self.normals[self.triangles[triangle]]))
+        agrees = np.einsum("px,px->p", normal, normals) >= self.min_cosine
+        return _ScanPositions(
+            (triangle >= 0) & agrees & ~self._lies_on_boundary(closest),
+            _interpolate(closest, self.vertices[self.triangles[triangle]]),
+            _interpolate(closest, self.uv[self.uv_triangles[triangle]]),
+            self.island[triangle],
             self.density[triangle],
         )
 
-    def _on_open_edge(self, closest: ClosestPoints) -> Bool[np.ndarray, "points"]:
-        """Edge k lies opposite corner k + 2."""
-        on_edge = np.roll(closest.barycentric <= ON_EDGE, -2, 1) & self.open[closest.triangle]
+    def _lies_on_boundary(self, closest: ClosestPoints) -> Bool[np.ndarray, "points"]:
+        """Tell which points lie on the boundary; edge k lies opposite corner k + 2."""
+        on_edge = np.roll(closest.barycentric <= ON_EDGE, -2, 1) & self.boundary[closest.triangle]
         at_corner = closest.barycentric >= 1 - ON_EDGE
-        at_corner &= self.open_vertices[closest.triangle]
+        at_corner &= self.boundary_vertices[closest.triangle]
         return np.asarray((on_edge | at_corner).any(1))
 
 
-def _density(
+def _compute_density(
     corners: Float[np.ndarray, "triangles 3 3"], uv: Float[np.ndarray, "triangles 3 2"]
 ) -> Float[np.ndarray, "triangles"]:
-    """Length in the texture of a unit on the surface, the largest of the three edges'."""
-    length = _edges(corners)
-    return np.asarray((_edges(uv) / np.where(length > 0, length, np.inf)).max(1))
+    """Compute the length in the texture of a unit on the surface, the largest of three edges'."""
+    length = _measure_edges(corners)
+    return np.asarray((_measure_edges(uv) / np.where(length > 0, length, np.inf)).max(1))
 
 
-def _mean(
+def _interpolate(
     closest: ClosestPoints, corners: Float[np.ndarray, "points 3 k"]
 ) -> Float[np.ndarray, "points k"]:
     return np.asarray(np.einsum("pk,pkx->px", closest.barycentric, corners))
 
 
-def _edges(corners: Float[np.ndarray, "triangles 3 k"]) -> Float[np.ndarray, "triangles 3"]:
+def _measure_edges(corners: Float[np.ndarray, "triangles 3 k"]) -> Float[np.ndarray, "triangles 3"]:
     return np.asarray(np.linalg.norm(np.roll(corners, -1, 1) - corners, axis=2))
 
 
-def _untorn(
-    places: _Places, triangles: Int[np.ndarray, "triangles 3"]
+def _find_whole(
+    places: _ScanPositions, triangles: Int[np.ndarray, "triangles 3"]
 ) -> Bool[np.ndarray, "triangles"]:
-    """Triangles whose corners lie together in the scan's texture as they do on the scan."""
-    chart, density = places.chart[triangles], places.density[triangles]
-    length = _edges(places.position[triangles])
-    expected = TORN * np.maximum(density, np.roll(density, -1, 1)) * length
-    untorn = _edges(places.uv[triangles]) <= expected + 1e-6
-    return np.asarray((chart == chart[:, :1]).all(1) & untorn.all(1))
+    """Find triangles that no cut of the scan's texture crosses."""
+    island, density = places.island[triangles], places.density[triangles]
+    length = _measure_edges(places.position[triangles])
+    expected = CUT_RATIO * np.maximum(density, np.roll(density, -1, 1)) * length
+    whole = _measure_edges(places.uv[triangles]) <= expected + 1e-6
+    return np.asarray((island == island[:, :1]).all(1) & whole.all(1))
 
 
-def _check(space: TextureSpace, fitted: Mesh, scan: Mesh) -> None:
+def _check_textures(space: TextureSpace, model_mesh: Mesh, scan: Mesh) -> None:
     if scan.uv is None or scan.uv_triangles is None:
         raise InputError(
             f"{scan.name} has no texture coordinates, so its texture cannot be placed; export the "
@@ -155,8 +181,8 @@ def _check(space: TextureSpace, fitted: Mesh, scan: Mesh) -> None:
         )
     if scan.texture is None:
         raise InputError(f"{scan.name} has no texture; give the picture that belongs to it.")
-    if len(fitted.triangles) != len(space.triangles):
+    if len(model_mesh.triangles) != len(space.triangles):
         raise InputError(
-            f"{fitted.name} has {len(fitted.triangles)} triangles and the texture space "
+            f"{model_mesh.name} has {len(model_mesh.triangles)} triangles and the texture space "
             f"{len(space.triangles)}; make the texture space from the same model."
         )

@@ -64,7 +64,7 @@ def test_a_denser_source_is_averaged_over_a_texel() -> None:
     boxes = fine.reshape(16, 4, 16, 4, 1).mean((1, 3))
     # k samples of a bilinear picture stand for the box of k pixels.
     assert np.abs(image - boxes).max() < 1e-6
-    point, _ = warp_texture(space, SQUARE[HALVES], everywhere(space), fine, most_samples=1)
+    point, _ = warp_texture(space, SQUARE[HALVES], everywhere(space), fine, max_samples=1)
     assert np.abs(point - boxes).mean() > 0.05
 
 
