@@ -1,4 +1,4 @@
-"""The `skinnet` command. What is heavy to import is imported by the verb that needs it."""
+"""The `skinnet` command; each verb imports what is slow to import only when it runs."""
 
 import argparse
 import json
@@ -17,46 +17,58 @@ if TYPE_CHECKING:
 
 PIPELINE = {
     "fit-shape": "fit a shape model to scans",
-    "maps": "scans to maps of melanin and hemoglobin: fit, warp, calibrate, invert",
-    "build-model": "maps of many people to a hybrid, a linear and a joint model",
-    "sample": "random faces from a model",
+    "maps": "make melanin and hemoglobin maps from scans: fit, warp, calibrate, invert",
+    "build-model": "build a hybrid, a linear and a joint model from the maps of many people",
+    "sample": "sample random faces from a model",
     "edit-maps": "scale, add to or paint on maps, and render the face again",
 }
 """Verbs of the classic pipeline, which take their settings from YAML (`skinnet.pipeline`)."""
 
-OK, UNREAD, BAD_INPUT, INTERRUPTED = 0, 1, 2, 130
-STDIN = "-"
+_STDIN = "-"
+_OK, _UNREAD, _BAD_INPUT, _INTERRUPTED = 0, 1, 2, 130
+"""Exit codes; the second is for an output that nobody reads."""
 
 
 def main(argv: Sequence[str] | None = None) -> int:
-    """Run one verb; the exit code is 0, 2 for bad input, or 130 after Ctrl-C."""
+    """Run one verb of the command.
+
+    Args:
+        argv: the arguments; those of the process by default.
+
+    Returns:
+        The exit code: 0, 2 for bad input, or 130 after Ctrl-C.
+
+    Example:
+        >>> main(["predict", "absent.jpg"])  # prints to standard error
+        2
+    """
     parser = argparse.ArgumentParser(
-        prog="skinnet", description="Reads a photograph as skin: melanin and hemoglobin."
+        prog="skinnet", description="Melanin and hemoglobin maps of a photograph of skin."
     )
     parser.add_argument("--version", action="version", version=f"skinnet {__version__}")
     verbs = parser.add_subparsers(title="verbs", required=True, metavar="VERB")
-    for add in (_add_predict, _add_edit):
-        add(verbs)
+    _add_predict(verbs)
+    _add_edit(verbs)
     for verb, help_ in PIPELINE.items():
         verbs.add_parser(verb, help=help_, add_help=False)
-    given = list(sys.argv[1:] if argv is None else argv)
+    arguments = list(sys.argv[1:] if argv is None else argv)
     try:
-        if given and given[0] in PIPELINE:
-            return _pipeline(given[0], given[1:])
-        options = parser.parse_args(given)
+        if arguments and arguments[0] in PIPELINE:
+            return _run_pipeline(arguments[0], arguments[1:])
+        options = parser.parse_args(arguments)
         code: int = options.run(options)
     except BrokenPipeError:
         # Nobody reads on; Python would complain when it flushes at its end.
         os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
-        return UNREAD
+        return _UNREAD
     except (InputError, OSError) as error:
         return _report(error)
     except KeyboardInterrupt:
-        return INTERRUPTED
+        return _INTERRUPTED
     return code
 
 
-def _pipeline(verb: str, arguments: list[str]) -> int:
+def _run_pipeline(verb: str, arguments: list[str]) -> int:
     try:
         from skinnet.pipeline.command import run_verb
 
@@ -70,22 +82,28 @@ def _pipeline(verb: str, arguments: list[str]) -> int:
 
 
 def _add_predict(verbs: "argparse._SubParsersAction[argparse.ArgumentParser]") -> None:
-    verb = verbs.add_parser("predict", help="photographs to maps, a panel and numbers")
+    verb = verbs.add_parser("predict", help="make maps, a panel and a summary of photographs")
     verb.add_argument(
         "input", nargs="+", help="photographs, a folder of them, or - for standard input"
     )
     verb.add_argument(
-        "-o", "--output", type=Path, metavar="DIR", help="default: skinmaps beside the photograph"
+        "-o",
+        "--output",
+        type=Path,
+        metavar="DIR",
+        help="folder to write to; by default skinmaps in the photograph's folder",
     )
-    verb.add_argument("--json", action="store_true", help="print the numbers, one object a line")
+    verb.add_argument(
+        "--json", action="store_true", help="print each summary as one line of JSON, nothing else"
+    )
     verb.add_argument(
         "--no-detail",
         dest="detail",
         action="store_false",
-        help="leave the maps as soft as the network sees; faster",
+        help="do not add the photograph's detail to the network's maps; faster",
     )
     _add_common(verb)
-    verb.set_defaults(run=predict)
+    verb.set_defaults(run=_predict)
 
 
 def _add_edit(verbs: "argparse._SubParsersAction[argparse.ArgumentParser]") -> None:
@@ -96,34 +114,47 @@ def _add_edit(verbs: "argparse._SubParsersAction[argparse.ArgumentParser]") -> N
         "--output",
         type=Path,
         metavar="FILE",
-        help=".png or .jpg; default: INPUT_edited.png. JPEG changes every pixel a little",
+        help=".png or .jpg; by default INPUT_edited.png. JPEG changes every pixel a little",
     )
     for pigment in ("melanin", "hemoglobin"):
-        verb.add_argument(f"--{pigment}", type=float, default=1.0, metavar="X", help="factor, 0-10")
+        verb.add_argument(
+            f"--{pigment}",
+            type=float,
+            default=1.0,
+            metavar="X",
+            help=f"factor of {pigment}, from 0 to 10; 1 by default",
+        )
     _add_common(verb)
-    verb.set_defaults(run=edit)
+    verb.set_defaults(run=_edit)
 
 
 def _add_common(verb: argparse.ArgumentParser) -> None:
     verb.add_argument(
-        "--model", type=Path, metavar="FILE", help="encoder, X.onnx, with X.decoder.onnx beside it"
+        "--model",
+        type=Path,
+        metavar="FILE",
+        help="encoder, X.onnx, with X.decoder.onnx in the same folder; by default the shipped one",
     )
-    verb.add_argument("--whole-image", action="store_true", help="do not look for a face")
+    verb.add_argument(
+        "--whole-image",
+        action="store_true",
+        help="take the whole image, without a search for a face",
+    )
 
 
-def predict(options: argparse.Namespace) -> int:
-    """Decompose every input; report the bad ones and go on. 2 if any was bad."""
+def _predict(options: argparse.Namespace) -> int:
+    """Decompose every input; report bad inputs and continue. The exit code is 2 if any was bad."""
     from skinnet.inference.decomposer import Decomposer
 
     decomposer = Decomposer(options.model)
     decomposer.load()
-    code = OK
+    code = _OK
     taken: set[tuple[Path, str]] = set()
-    for source in _photographs(options.input):
+    for source in _list_photographs(options.input):
         try:
             if isinstance(source, InputError):
                 raise source
-            folder, stem = _place(source, options.output, taken)
+            folder, stem = _choose_stem(source, options.output, taken)
             _predict_one(decomposer, source, folder, stem, options)
         except InputError as error:
             code = _report(error)
@@ -136,103 +167,100 @@ def _predict_one(
     from skinnet.images.photograph import read_photo
     from skinnet.inference.results import write_results
 
-    photo = read_photo(_readable(source), _name(source))
-    decomposition = decomposer(photo, options.whole_image, _name(source), options.detail)
-    summary = {"file": _name(source)} | decomposition.summary()
+    name = _name(source)
+    photo = read_photo(_open(source), name)
+    decomposition = decomposer(photo, options.whole_image, name, options.detail)
+    summary = {"file": name} | decomposition.summary()
     count = write_results(folder, stem, photo, decomposition, summary)
     if options.json:
-        _say(json.dumps(summary, allow_nan=False))
+        _print(json.dumps(summary, allow_nan=False))
         return
     written = f"{count} files: {folder / stem}_*.png and {folder / stem}.json"
-    mean = {name: summary["maps"][name]["mean"] for name in ("melanin", "hemoglobin")}
-    if mean["melanin"] is None:
-        _say(f"{_name(source)}: no skin was found; {written}")
+    means = {pigment: summary["maps"][pigment]["mean"] for pigment in ("melanin", "hemoglobin")}
+    if means["melanin"] is None:
+        _print(f"{name}: no skin was found; {written}")
         return
-    numbers = ", ".join(f"{name} {value:.3g}" for name, value in mean.items())
-    _say(
-        f"{_name(source)}: {numbers} over {summary['skin_share']:.0%} of the head's crop; {written}"
-    )
+    numbers = ", ".join(f"{pigment} {mean:.3g}" for pigment, mean in means.items())
+    _print(f"{name}: {numbers} on skin, {summary['skin_share']:.0%} of the crop; {written}")
 
 
-def edit(options: argparse.Namespace) -> int:
+def _edit(options: argparse.Namespace) -> int:
     """Write one photograph with its pigments multiplied."""
     from skinnet.images.photograph import read_photo
     from skinnet.inference.decomposer import Decomposer
     from skinnet.inference.results import _check_suffix, _write_picture
 
     source: str = options.input
-    target: Path = options.output or _beside(source).parent / f"{_stem(source)}_edited.png"
+    path = _as_path(source)
+    target: Path = options.output or path.parent / f"{path.stem}_edited.png"
     _check_suffix(target)
-    if source != STDIN and target.exists() and Path(source).exists() and target.samefile(source):
+    if source != _STDIN and target.exists() and path.exists() and target.samefile(path):
         raise InputError(f"{target} is the photograph itself; choose another file with -o.")
     decomposer = Decomposer(options.model)
-    photo = read_photo(_readable(source), _name(source))
-    edited = decomposer.edit(
-        photo, options.melanin, options.hemoglobin, options.whole_image, _name(source)
-    )
+    name = _name(source)
+    photo = read_photo(_open(source), name)
+    edited = decomposer.edit(photo, options.melanin, options.hemoglobin, options.whole_image, name)
     _write_picture(target, edited)
-    _say(f"{_name(source)}: {target}")
-    return OK
+    _print(f"{name}: {target}")
+    return _OK
 
 
-def _photographs(inputs: Sequence[str]) -> Iterator[str | InputError]:
-    """Each photograph, a folder's in the order of their names, and an error for a bad folder."""
+def _list_photographs(inputs: Sequence[str]) -> Iterator[str | InputError]:
+    """Each photograph, those of a folder in the order of their names; errors for bad folders."""
     for source in inputs:
         if not source:
             yield InputError("An empty name was given; name a photograph, a folder, or - .")
             continue
         try:
-            if source != STDIN and Path(source).is_dir():
-                yield from _inside(Path(source))
+            if source != _STDIN and Path(source).is_dir():
+                yield from _list_folder(Path(source))
             else:
                 yield source
         except OSError as error:
             yield InputError(f"{source} cannot be read ({error.strerror}); check the path.")
 
 
-def _inside(folder: Path) -> list[str | InputError]:
+def _list_folder(folder: Path) -> list[str | InputError]:
     from skinnet.images._decode import PHOTO_SUFFIXES
 
-    shown = (file for file in sorted(folder.iterdir()) if not file.name.startswith("."))
-    found = [
-        str(file) for file in shown if file.suffix.lower() in PHOTO_SUFFIXES and file.is_file()
+    visible = (file for file in sorted(folder.iterdir()) if not file.name.startswith("."))
+    photographs = [
+        str(file) for file in visible if file.suffix.lower() in PHOTO_SUFFIXES and file.is_file()
     ]
     suffixes = ", ".join(sorted(PHOTO_SUFFIXES))
-    return [*found] or [
+    return [*photographs] or [
         InputError(f"The folder {folder} holds no photographs; they end in {suffixes}.")
     ]
 
 
-def _place(source: str, output: Path | None, taken: set[tuple[Path, str]]) -> tuple[Path, str]:
-    """Folder and stem of a photograph's files, the stem counted on if this run has used it."""
-    folder = output or _beside(source).parent / "skinmaps"
-    stem = _stem(source)
-    number = 1
+def _choose_stem(
+    source: str, output: Path | None, taken: set[tuple[Path, str]]
+) -> tuple[Path, str]:
+    """Folder and stem of a photograph's files; a stem that is taken gets a number."""
+    path = _as_path(source)
+    folder = output or path.parent / "skinmaps"
+    stem, number = path.stem, 1
     while (folder, stem.casefold()) in taken:
         number += 1
-        stem = f"{_stem(source)}-{number}"
+        stem = f"{path.stem}-{number}"
     taken.add((folder, stem.casefold()))
     return folder, stem
 
 
-def _beside(source: str) -> Path:
-    return Path("stdin" if source == STDIN else source)
-
-
-def _stem(source: str) -> str:
-    return _beside(source).stem
+def _as_path(source: str) -> Path:
+    return Path("stdin" if source == _STDIN else source)
 
 
 def _name(source: str) -> str:
-    return "standard input" if source == STDIN else source
+    return "standard input" if source == _STDIN else source
 
 
-def _readable(source: str) -> str | BinaryIO | BufferedIOBase:
-    return sys.stdin.buffer if source == STDIN else source
+def _open(source: str) -> str | BinaryIO | BufferedIOBase:
+    return sys.stdin.buffer if source == _STDIN else source
 
 
-def _say(text: str) -> None:
-    """Print a line; characters that the terminal or the pipe cannot take are written as escapes."""
+def _print(text: str) -> None:
+    """Print a line; characters that the output's encoding does not have become escapes."""
     encoding = sys.stdout.encoding or "utf-8"
     print(text.encode(encoding, "backslashreplace").decode(encoding), flush=True)
 
@@ -244,4 +272,4 @@ def _report(error: Exception) -> int:
             f"{error.filename or 'A file'} cannot be used ({error.strerror}); check the path."
         )
     print(f"skinnet: {sentence}", file=sys.stderr)
-    return BAD_INPUT
+    return _BAD_INPUT

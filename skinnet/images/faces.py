@@ -40,9 +40,8 @@ def find_face(photo: NDArray[np.uint8]) -> Box | None:
 
     Example:
         >>> from skimage.data import astronaut
-        >>> face = find_face(astronaut())
-        >>> 80 < face.width < 100, 170 < face.left < 180, 60 < face.top < 80
-        (True, True, True)
+        >>> find_face(astronaut())
+        Box(left=170, top=62, right=277, bottom=169)
     """
     ratio = max(max(photo.shape[:2]) / _DETECTION_SIZE, 0.5)  # enlarge by 2 at most
     height, width = (max(1, round(side / ratio)) for side in photo.shape[:2])

@@ -43,7 +43,7 @@ class Decomposition:
         >>> from skimage.data import astronaut
         >>> from skinnet import Decomposer
         >>> Decomposer(threads=1)(astronaut(), detail=False)
-        <Decomposition 512 x 512: melanin 0.0306, hemoglobin 0.0376 on skin, 27% of the box>
+        <Decomposition 512 x 512: melanin 0.0302, hemoglobin 0.029 on skin, 17% of the box>
     """
 
     melanin: NDArray[np.float32]

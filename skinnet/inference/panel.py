@@ -141,7 +141,7 @@ def round_up(value: float) -> float:
         The least such number that is not below `value`.
 
     Example:
-        >>> round_up(1.2), round_up(37)
+        >>> round_up(1.2), round_up(37.0)
         (1.5, 40.0)
     """
     if not value > 1e-6:

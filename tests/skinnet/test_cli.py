@@ -293,7 +293,7 @@ def test_an_interrupt_is_quiet(
     def interrupt(options: object) -> int:
         raise KeyboardInterrupt
 
-    monkeypatch.setattr(cli, "predict", interrupt)
+    monkeypatch.setattr(cli, "_predict", interrupt)
     assert main(["predict", "a.jpg"]) == 130
     assert capsys.readouterr() == ("", "")
 
