@@ -73,7 +73,7 @@ def documented(name: str, found: Any) -> Iterator[tuple[str, Any]]:
 
 def arguments(one: Any) -> list[str]:
     """Names of what a caller hands in."""
-    if inspect.isclass(one) and issubclass(one, Exception):
+    if inspect.isclass(one) and (issubclass(one, Exception) or getattr(one, "_is_protocol", False)):
         return []
     try:
         given = inspect.signature(one).parameters.values()
