@@ -1,4 +1,4 @@
-"""A network of the shape of BioFaceNet, with random weights, to compare time with.
+"""A network of the shape of BioFaceNet, with random weights, to compare run times.
 
 Alotaibi & Smith, BMVC 2019: a U-Net of five levels, 32 to 512 filters, three convolutions a level,
 with four decoders (melanin, hemoglobin, shading, specular) on one encoder and a fully connected
@@ -13,7 +13,7 @@ FILTERS = (32, 64, 128, 256, 512)
 
 
 class BioFaceNetShape(nn.Module):
-    """float32 [batch, 3, height, width] to four maps and 15 globals."""
+    """Computes four maps and 15 globals from float32 [batch, 3, height, width]."""
 
     def __init__(self) -> None:
         super().__init__()
@@ -23,6 +23,7 @@ class BioFaceNetShape(nn.Module):
         self.globals = nn.Linear(FILTERS[-1], 15)
 
     def forward(self, image: Tensor) -> tuple[Tensor, ...]:
+        """Compute the maps and the globals."""
         features = [self.down[0](image)]
         for level in self.down[1:]:
             features.append(level(F.max_pool2d(features[-1], 2)))

@@ -16,17 +16,19 @@ Photograph = NDArray[np.uint8]
 
 QUALITY = 40
 NEUTRAL, COOLER, WARMER = 6500.0, 7000.0, 6000.0
-"""Kelvin of the daylight that is white, and of those that pictures are turned to."""
+"""Kelvin of the daylight that is white, and of the daylights that pictures are adapted to."""
 
 
-def gained(photograph: Photograph, gain: NDArray[np.float64]) -> Photograph:
-    """Linear light times a gain for each channel, clipped and in 8 bits again."""
+def apply_gain(photograph: Photograph, gain: NDArray[np.float64]) -> Photograph:
+    """Multiply linear light by a gain for each channel; the result is clipped to 8 bits."""
     return to_uint8(linear_to_srgb(srgb_to_linear(photograph) * gain.astype(np.float32)))
 
 
-def balance(temperature: float) -> NDArray[np.float64]:
-    """Gains of R, G, B that turn the white of 6,500 K into that of another daylight (von Kries in
-    linear sRGB), at the same luminance."""
+def compute_gain(temperature: float) -> NDArray[np.float64]:
+    """Compute gains of R, G and B that adapt the white of 6,500 K to another daylight.
+
+    The adaptation is von Kries' in linear sRGB, at the same luminance.
+    """
     return (_white(temperature) / _white(NEUTRAL)).numpy()
 
 
@@ -35,33 +37,33 @@ def _white(temperature: float) -> torch.Tensor:
     return torch.linalg.solve(srgb_to_xyz(), xyz / xyz[1])
 
 
-def jpeg(photograph: Photograph) -> Photograph:
-    """Through a JPEG of that quality, chroma at half size."""
+def compress(photograph: Photograph) -> Photograph:
+    """Compress as JPEG of quality 40, with chroma at half size."""
     stream = BytesIO()
     Image.fromarray(photograph).save(stream, "JPEG", quality=QUALITY, subsampling="4:2:0")
     return np.array(Image.open(stream))
 
 
-def halved(photograph: Photograph) -> Photograph:
-    """Half as wide and high."""
+def halve(photograph: Photograph) -> Photograph:
+    """Halve width and height."""
     height, width = photograph.shape[:2]
     return resize(photograph, max(1, width // 2), max(1, height // 2))
 
 
-def mirrored(photograph: Photograph) -> Photograph:
-    """Left and right changed."""
+def mirror(photograph: Photograph) -> Photograph:
+    """Exchange left and right."""
     return np.ascontiguousarray(photograph[:, ::-1])
 
 
 DISTURBANCES: dict[str, Callable[[Photograph], Photograph]] = {
-    "exposure_up": partial(gained, gain=np.full(3, 2.0)),
-    "exposure_down": partial(gained, gain=np.full(3, 0.5)),
-    "cooler": partial(gained, gain=balance(COOLER)),
-    "warmer": partial(gained, gain=balance(WARMER)),
-    "jpeg_40": jpeg,
-    "half_size": halved,
-    "mirror": mirrored,
+    "exposure_up": partial(apply_gain, gain=np.full(3, 2.0)),
+    "exposure_down": partial(apply_gain, gain=np.full(3, 0.5)),
+    "cooler": partial(apply_gain, gain=compute_gain(COOLER)),
+    "warmer": partial(apply_gain, gain=compute_gain(WARMER)),
+    "jpeg_40": compress,
+    "half_size": halve,
+    "mirror": mirror,
 }
 
-UNDONE = ("mirror",)
-"""Those after which maps are mirrored back."""
+MIRRORED = ("mirror",)
+"""Disturbances after which maps are mirrored back."""

@@ -1,19 +1,22 @@
-"""What the encoder reads on pictures that training never saw, beside what it has to beat.
+"""Compares the encoder with baselines on pictures that training never saw.
 
     python -m benchmarks.encoder [--json]
 
-512 renders of the photometric twin, 256 x 256, over true skin pixels and in physical units: heads,
-cameras and lots of the test split, with the seeds that are written here. Rows: the training mean;
-the table of skin inverted under D65 and the mean camera; Tsumura's directions, scaled best to the
-truth itself; the encoder after its first stage and as it is shipped. Networks see what users'
-see: the picture at their working size, and their maps brought back. Then real portraits, where
-`../shared/data/faces` is there. The training mean is that of training's own first lots and
-cameras, on the validation's heads at 64 px. RMSE on BioFaceNet's grid is of
-2 (f / f_max)^(1/3) - 1 with f_max .43 and .07, not clipped at its ends. `reconstruction` is cut off
-at 1, as a photograph is; `explained` is its error without the offset, which is the photograph by
-the share that the mask leaves and so hides what is missed of the skin. `leak` is the correlation of
-predicted minus true melanin with the true shading; `group_ratio` the worst skin tone's RMSE of
-melanin relative to its own mean, over the best's.
+The test set is 512 synthetic faces of 256 x 256 pixels: heads, cameras and scene parameters of the
+test split, with the seeds below. Errors are over the pixels of true skin, in physical units. The
+rows are:
+
+- the mean of the training set, on the heads of the validation set at 64 pixels;
+- the table of skin colours, inverted under D65 and the mean camera;
+- Tsumura's directions, scaled by least squares to the truth itself;
+- the encoder after stage 1, and the shipped one. Networks read the picture at their working size,
+  as for users, and their maps are resized to the picture.
+
+Real portraits follow, if there is a folder `../shared/data/faces`. `grid_rmse` is the RMSE of
+2 (f / f_max)^(1/3) - 1, with f_max .43 and .07, not clipped. `reconstruction` is clipped at 1, as a
+photograph is. `explained` is its error without the offset, which would hide errors of the skin.
+`leak` is the correlation of melanin's error with the true shading. `group_ratio` divides the
+largest relative RMSE of melanin among skin tones by the smallest.
 """
 
 import platform
@@ -27,13 +30,13 @@ import torch
 from torch import Tensor
 from torch.utils.data import DataLoader
 
-from benchmarks.baselines import Constant, Lookup, Tsumura, means
+from benchmarks.baselines import Constant, Lookup, Tsumura, average_skin
 from benchmarks.portraits import measure_portraits
 from benchmarks.reader import Encoder, NetworkReader
 from benchmarks.report import Results, main
-from benchmarks.scene import Pixels, Scene, scene
+from benchmarks.scene import Pictures, Pixels, collect_pictures
 from benchmarks.scores import Scores
-from benchmarks.targets import ASKED, layout, not_beaten
+from benchmarks.targets import ASKED, lay_out, list_not_beaten
 from skinnet._version import __version__
 from skinnet.errors import InputError
 from skinnet.network import SkinAutoencoder
@@ -44,12 +47,12 @@ SHARED = Path(__file__).parents[2] / "shared" / "data"
 WEIGHTS = {"stage1": Path(__file__).parent / "stage1.safetensors", "stage2": None}
 """Weights by row; None are the shipped ones."""
 
-Row = Callable[[Scene], Pixels]
+Row = Callable[[Pictures], Pixels]
 
 
 @dataclass(frozen=True)
 class TestSet:
-    """Which pictures are looked at; the defaults are those of the table."""
+    """Sizes and sources of the pictures; the defaults are those of the published table."""
 
     size: int = 256
     heads: int = 128
@@ -65,26 +68,26 @@ class TestSet:
     every_portrait: int = 1
 
 
-def test_scenes(settings: TestSet, decoder: SkinDecoder) -> Iterator[Scene]:
-    """The test pictures; each takes about a megabyte."""
-    data = _twin(settings, settings.size, test=settings.heads)
+def render_test_set(settings: TestSet, decoder: SkinDecoder) -> Iterator[Pictures]:
+    """Render the test set; a picture takes about a megabyte."""
+    data = _make_faces(settings, settings.size, test=settings.heads)
     data.setup("test")
-    for number, lot in enumerate(data.test_dataloader(), 1):
-        yield scene(data.render(lot, "test"), decoder)
-        _say(f"\rTest pictures: {number * settings.batch_size:,} drawn.")
-    _say("\n")
+    for number, scenes in enumerate(data.test_dataloader(), 1):
+        yield collect_pictures(data.render(scenes, "test"), decoder)
+        _log(f"\rTest pictures: {number * settings.batch_size:,} rendered.")
+    _log("\n")
 
 
-def training_means(settings: TestSet, decoder: SkinDecoder) -> dict[str, Tensor]:
-    """Means over training's first lots, with its cameras, on the heads of the validation."""
-    data = _twin(settings, settings.train_size, val=settings.train_heads)
+def average_training_set(settings: TestSet, decoder: SkinDecoder) -> dict[str, Tensor]:
+    """Average the first scenes of training, on the heads of the validation set."""
+    data = _make_faces(settings, settings.train_size, val=settings.train_heads)
     data.setup("validate")
     lots = Lots(data.buffers["val"], "train", settings.train_samples, settings.seed)
     batches = DataLoader(lots, settings.batch_size)
-    return means(scene(data.render(lot, "train"), decoder) for lot in batches)
+    return average_skin(collect_pictures(data.render(scenes, "train"), decoder) for scenes in batches)
 
 
-def _twin(settings: TestSet, size: int, test: int = 1, val: int = 1) -> SyntheticFaces:
+def _make_faces(settings: TestSet, size: int, test: int = 1, val: int = 1) -> SyntheticFaces:
     ict = settings.ict if settings.ict and Path(settings.ict).is_file() else None
     return SyntheticFaces(
         size,
@@ -98,26 +101,26 @@ def _twin(settings: TestSet, size: int, test: int = 1, val: int = 1) -> Syntheti
     )
 
 
-def networks() -> dict[str, SkinAutoencoder]:
-    """The encoder after each stage, where its weights are there and of this version."""
+def load_networks() -> dict[str, SkinAutoencoder]:
+    """Load the encoder after each stage, if its weights can be read."""
     found = {}
     for name, path in WEIGHTS.items():
         try:
             found[name] = SkinAutoencoder.from_pretrained(path)
         except (InputError, RuntimeError) as error:
-            _say(f"There is no row {name}: {str(error).splitlines()[0]}\n")
+            _log(f"There is no row {name}: {str(error).splitlines()[0]}\n")
     return found
 
 
 @torch.no_grad()
-def score(rows: Mapping[str, Row], pictures: Iterable[Scene]) -> dict[str, Scores]:
-    """Every row on every picture."""
+def score(rows: Mapping[str, Row], pictures: Iterable[Pictures]) -> dict[str, Scores]:
+    """Score every row on every picture."""
     scores = {name: Scores() for name in rows}
     for number, one in enumerate(pictures, 1):
         for name, row in rows.items():
             scores[name].add(row(one), one)
-        _say(f"\rBatches read: {number}.")
-    _say("\n")
+        _log(f"\rBatches read: {number}.")
+    _log("\n")
     return scores
 
 
@@ -125,43 +128,43 @@ def measure(
     settings: TestSet = TestSet(),
     models: Mapping[str, SkinAutoencoder] | None = None,
 ) -> Results:
-    """Every figure, by row and column."""
+    """Measure every figure, by row and column."""
     weights: dict[str, str] = {}
     if models is None:
-        models = networks()
+        models = load_networks()
         weights = {name: model.trained_on for name, model in models.items()}
     decoder = SkinDecoder()
-    mean = training_means(settings, decoder)
-    pictures = list(test_scenes(settings, decoder))
+    mean = average_training_set(settings, decoder)
+    pictures = list(render_test_set(settings, decoder))
     ica = Tsumura(decoder)
     for one in pictures:
-        ica.learn(one)
+        ica.fit(one)
     rows: dict[str, Row] = {"constant": Constant(mean), "lookup": Lookup(decoder), "ica": ica}
     rows |= {name: Encoder(NetworkReader(model), model.decoder) for name, model in models.items()}
     scores = score(rows, pictures)
     found: Results = dict.fromkeys(("constant", "lookup", "ica", *WEIGHTS))
-    found |= {name: one.results(scores["constant"]) for name, one in scores.items()}
+    found |= {name: one.compute_results(scores["constant"]) for name, one in scores.items()}
     return {
         **found,
-        "portraits": _portraits(settings, models),
+        "portraits": _measure_portraits(settings, models),
         "explained": {name: scores[name].explained.rmse for name in models},
-        "groups": {name: one.by_group() for name, one in scores.items()},
-        "not_beaten": not_beaten(found),
+        "groups": {name: one.group_by_tone() for name, one in scores.items()},
+        "not_beaten": list_not_beaten(found),
         "asked": ASKED,
-        "settings": {**_settings(settings, mean, ica), "weights": weights},
+        "settings": {**_describe_settings(settings, mean, ica), "weights": weights},
     }
 
 
-def _portraits(settings: TestSet, models: Mapping[str, SkinAutoencoder]) -> Results | None:
+def _measure_portraits(settings: TestSet, models: Mapping[str, SkinAutoencoder]) -> Results | None:
     folder, model = Path(settings.portraits), models.get("stage2")
     if model is None or not folder.is_dir():
         missing = f"{folder} is not there" if model else "there is no stage2 to read them"
-        _say(f"Portraits are left out: {missing}.\n")
+        _log(f"Portraits are left out: {missing}.\n")
         return None
     return measure_portraits(folder, NetworkReader(model), model.decoder, settings.every_portrait)
 
 
-def _settings(settings: TestSet, mean: Mapping[str, Tensor], ica: Tsumura) -> Results:
+def _describe_settings(settings: TestSet, mean: Mapping[str, Tensor], ica: Tsumura) -> Results:
     return {
         **asdict(settings),
         "skinnet": __version__,
@@ -176,10 +179,10 @@ def _settings(settings: TestSet, mean: Mapping[str, Tensor], ica: Tsumura) -> Re
     }
 
 
-def _say(text: str) -> None:
+def _log(text: str) -> None:
     sys.stderr.write(text)
     sys.stderr.flush()
 
 
 if __name__ == "__main__":
-    main(measure, __doc__ or "", layout)
+    main(measure, __doc__ or "", lay_out)

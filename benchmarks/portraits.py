@@ -1,8 +1,8 @@
-"""Real portraits: how well they are rebuilt, how firmly they are read, and in what order.
+"""Real portraits: reconstruction, stability, and the order of skin tones.
 
-Nobody knows their pigments. What is known: the photograph itself, that a face keeps its pigments
-when its picture is made brighter, warmer or smaller, and, of the London set, a grey wall by which
-the skin's colour can be measured.
+Their pigments are unknown. What is known is the photograph, and that a face keeps its pigments when
+its picture is made brighter, warmer or smaller. In the London set a grey wall serves as a
+reference, by which the colour of skin can be measured.
 """
 
 import sys
@@ -15,34 +15,40 @@ import torch
 from numpy.typing import NDArray
 from scipy.stats import spearmanr
 
-from benchmarks.disturbances import DISTURBANCES, UNDONE
-from benchmarks.reader import Reader, composed, resized
+from benchmarks.disturbances import DISTURBANCES, MIRRORED
+from benchmarks.reader import Reader, compose, resize_maps
 from benchmarks.report import Results
 from benchmarks.running_statistics import RunningStatistics
-from benchmarks.scene import under_daylight
+from benchmarks.scene import render_under_daylight
 from benchmarks.typology import GROUPS, group, typology_angle
 from skinnet.images import find_face, frame_head, read_photo, resize, segment_skin, srgb_to_linear
 from skinnet.network.autoencoder import SkinMaps
 from skinnet.physics import SkinDecoder
 
 LARGEST = 256
-"""Longest side of the crops, in pixels; smaller ones are left as they are."""
+"""Longest side of the crops in pixels; smaller crops keep their size."""
 
 EVERY = 20
-"""Of the Congress portraits, one in so many is disturbed; of the London ones, all."""
+"""One in so many of the Congress portraits is disturbed, and all of the London ones."""
 
 FEWEST = 50
-"""Pixels of skin below which a portrait says nothing."""
+"""Pixels of skin that a portrait needs to count."""
 
 WALL = (slice(0.02, 0.20), slice(0.02, 0.12))
-"""Rows and columns, as shares of the picture, of wall on its left; the same on its right."""
+"""Rows and columns of the wall on the left, as shares of the picture; the right is symmetric."""
 
 PIGMENTS = ("melanin", "hemoglobin")
 
 
 class Portrait(NamedTuple):
-    """A crop, uint8 sRGB [height, width, 3], where `segment_skin` sees skin in it, and the median
-    linear RGB of skin and wall in the whole photograph."""
+    """A face and what was measured in its photograph.
+
+    Attributes:
+        crop: uint8 sRGB, [height, width, 3].
+        skin: Where `segment_skin` finds skin in it.
+        colour: Median linear RGB of the skin.
+        wall: Median linear RGB of the wall.
+    """
 
     crop: NDArray[np.uint8]
     skin: NDArray[np.bool_]
@@ -50,36 +56,36 @@ class Portrait(NamedTuple):
     wall: NDArray[np.float32]
 
 
-def portraits(paths: Sequence[Path]) -> Iterator[Portrait]:
-    """Those of the photographs in which a face is found."""
+def read_portraits(paths: Sequence[Path]) -> Iterator[Portrait]:
+    """Yield the portraits of the photographs in which a face is found."""
     for number, path in enumerate(paths, 1):
-        if (one := portrait(read_photo(path))) is not None:
+        if (one := crop_portrait(read_photo(path))) is not None:
             yield one
         print(f"\rPortraits of {path.parent.name}: {number:,}. ", end="", file=sys.stderr)
     print(file=sys.stderr)
 
 
-def portrait(photo: NDArray[np.uint8]) -> Portrait | None:
-    """The square around the face, as `train.portraits` cuts it out, at `LARGEST` pixels."""
+def crop_portrait(photo: NDArray[np.uint8]) -> Portrait | None:
+    """Crop the face as `train.portraits` does, at `LARGEST` pixels; None without a face."""
     if (face := find_face(photo)) is None:
         return None
     box = frame_head(face, photo.shape[1], photo.shape[0])
     crop, mask = photo[box.slices], segment_skin(photo, face)[box.slices]
-    # Without any skin the whole crop's colour, which nobody asks for.
+    # Without any skin, the colour of the whole crop, which is not used.
     colour = np.median(srgb_to_linear(crop[mask >= min(0.5, mask.max())]), 0)
     scale = min(1.0, LARGEST / max(box.width, box.height))
     sides = round(box.width * scale), round(box.height * scale)
-    return Portrait(resize(crop, *sides), resize(mask, *sides) > 0.5, colour, wall(photo))
+    return Portrait(resize(crop, *sides), resize(mask, *sides) > 0.5, colour, measure_wall(photo))
 
 
-def held_out(count: int) -> set[int]:
-    """Places of the portraits that `train.portraits` keeps for validation, by its defaults."""
+def choose_held_out(count: int) -> set[int]:
+    """Choose the portraits that `train.portraits` keeps for validation, by its defaults."""
     order = np.random.default_rng(0).permutation(count)
     return set(order[: max(1, round(0.1 * count))].tolist())
 
 
-def wall(photo: NDArray[np.uint8]) -> NDArray[np.float32]:
-    """Median linear RGB of what is beside the head, near the upper corners."""
+def measure_wall(photo: NDArray[np.uint8]) -> NDArray[np.float32]:
+    """Measure the median linear RGB beside the head, near the upper corners."""
     rows, columns = (
         slice(round(part.start * side), round(part.stop * side))
         for part, side in zip(WALL, photo.shape[:2], strict=True)
@@ -91,37 +97,37 @@ def wall(photo: NDArray[np.uint8]) -> NDArray[np.float32]:
 def measure_portraits(
     folder: Path, reader: Reader, decoder: SkinDecoder, every: int = 1
 ) -> Results:
-    """Every figure; `every` takes only one picture in so many.
+    """Measure every figure; `every` takes only one picture in so many.
 
-    `congress_held_out` is what stage 2 did not see if it was trained on the Congress portraits by
-    the defaults of `train.portraits`; only with all pictures are these known.
+    `congress_held_out` are the portraits that stage 2 did not see, if it was trained on the
+    Congress portraits by the defaults of `train.portraits`. Only with all pictures are they known.
     """
     errors: dict[str, list[RunningStatistics]] = {}
-    bare: list[RunningStatistics] = []
+    explained: list[RunningStatistics] = []
     changes: dict[str, list[list[float]]] = {name: [] for name in DISTURBANCES}
     measured: list[tuple[Portrait, list[float]]] = []
     for kind in ("congress", "london"):
         errors[kind] = []
-        found = portraits(sorted((folder / kind).glob("*.jpg"))[::every])
+        found = read_portraits(sorted((folder / kind).glob("*.jpg"))[::every])
         for number, one in enumerate(found):
             maps, capture = reader(one.crop)
-            made = composed(maps, capture, decoder)
-            errors[kind].append(rebuilt(one, made.image))
-            bare.append(rebuilt(one, made.explained))
+            composition = compose(maps, capture, decoder)
+            errors[kind].append(measure_reconstruction(one, composition.image))
+            explained.append(measure_reconstruction(one, composition.explained))
             if kind == "london" or number % EVERY == 0:
-                for name, change in relative_changes(one.crop, maps, reader).items():
+                for name, change in measure_changes(one.crop, maps, reader).items():
                     changes[name].append(change)
             if kind == "london":
-                measured.append((one, means(maps, maps.mask > 0.5)))
-    kept = held_out(len(errors["congress"])) if every == 1 and errors["congress"] else set()
+                measured.append((one, average_pigments(maps, maps.mask > 0.5)))
+    kept = choose_held_out(len(errors["congress"])) if every == 1 and errors["congress"] else set()
     sets = {**errors, "congress_held_out": [errors["congress"][place] for place in kept]}
     return {
-        "reconstruction": pooled(errors["congress"] + errors["london"]).rmse,
-        "stability": {name: medians(some) for name, some in changes.items()},
-        "ita_rank": ita_rank([(one, melanin) for one, (melanin, _) in measured]),
-        "typology": by_tone(measured, decoder),
-        "explained": pooled(bare).rmse,
-        "reconstruction_by_set": {name: pooled(some).rmse for name, some in sets.items()},
+        "reconstruction": pool(errors["congress"] + errors["london"]).rmse,
+        "stability": {name: compute_medians(some) for name, some in changes.items()},
+        "ita_rank": rank_by_angle([(one, melanin) for one, (melanin, _) in measured]),
+        "typology": group_by_tone(measured, decoder),
+        "explained": pool(explained).rmse,
+        "reconstruction_by_set": {name: pool(some).rmse for name, some in sets.items()},
         "count": {
             **{name: len(some) for name, some in sets.items()},
             "disturbed": len(changes["mirror"]),
@@ -129,75 +135,76 @@ def measure_portraits(
     }
 
 
-def rebuilt(one: Portrait, image: torch.Tensor) -> RunningStatistics:
-    """Errors on the skin of a portrait, in linear RGB."""
+def measure_reconstruction(one: Portrait, image: torch.Tensor) -> RunningStatistics:
+    """Measure errors on the skin of a portrait, in linear RGB."""
     linear, skin = torch.from_numpy(srgb_to_linear(one.crop)), torch.from_numpy(one.skin)
     moments = RunningStatistics()
     moments.add(image[0].movedim(0, -1)[skin], linear[skin])
     return moments
 
 
-def pooled(parts: Iterable[RunningStatistics]) -> RunningStatistics:
-    """Of all pixels of several pictures."""
+def pool(parts: Iterable[RunningStatistics]) -> RunningStatistics:
+    """Pool the statistics of several pictures."""
     whole = RunningStatistics()
     for part in parts:
         whole.sums += part.sums
     return whole
 
 
-def means(maps: SkinMaps, skin: torch.Tensor) -> list[float]:
-    """Mean melanin and hemoglobin over skin; NaN where there is none."""
+def average_pigments(maps: SkinMaps, skin: torch.Tensor) -> list[float]:
+    """Average melanin and hemoglobin over skin; NaN if there is too little."""
     enough = skin.sum() >= FEWEST
     return [
         getattr(maps, name)[skin].double().mean().item() if enough else np.nan for name in PIGMENTS
     ]
 
 
-def relative_changes(
+def measure_changes(
     crop: NDArray[np.uint8], maps: SkinMaps, reader: Reader
 ) -> dict[str, list[float]]:
-    """By how much each disturbance changes both means, over the skin seen without it."""
+    """Measure how each disturbance changes both means, over the skin found without it."""
     skin = maps.mask > 0.5
-    before = means(maps, skin)
+    before = average_pigments(maps, skin)
     found = {}
     for name, disturb in DISTURBANCES.items():
         disturbed, _ = reader(disturb(crop))
-        if name in UNDONE:
+        if name in MIRRORED:
             disturbed = SkinMaps(*(one.flip(-1) for one in disturbed))
-        after = means(resized(disturbed, *crop.shape[:2]), skin)
+        after = average_pigments(resize_maps(disturbed, *crop.shape[:2]), skin)
         found[name] = [abs(b / a - 1) for a, b in zip(before, after, strict=True)]
     return found
 
 
-def medians(changes: list[list[float]]) -> dict[str, float | None]:
-    """Over portraits, leaving out those without skin."""
+def compute_medians(changes: list[list[float]]) -> dict[str, float | None]:
+    """Compute medians over portraits with skin."""
     usable = np.array([one for one in changes if np.isfinite(one).all()])
     if not len(usable):
         return dict.fromkeys(PIGMENTS)
     return dict(zip(PIGMENTS, np.median(usable, 0).tolist(), strict=True))
 
 
-def ita_rank(measured: list[tuple[Portrait, float]]) -> float | None:
-    """Spearman's correlation of mean melanin with the typology angle measured by the wall."""
+def rank_by_angle(measured: list[tuple[Portrait, float]]) -> float | None:
+    """Correlate mean melanin with the typology angle measured by the wall (Spearman's rank)."""
     usable = [(one, melanin) for one, melanin in measured if np.isfinite(melanin)]
     if len(usable) < 3 or len({melanin for _, melanin in usable}) == 1:
         return None
-    angles = wall_angles([one for one, _ in usable])
+    angles = compute_wall_angles([one for one, _ in usable])
     return float(spearmanr([melanin for _, melanin in usable], angles.numpy()).statistic)
 
 
-def by_tone(measured: list[tuple[Portrait, list[float]]], decoder: SkinDecoder) -> Results:
-    """Of each skin tone how many portraits, and means of melanin, of the angle measured by the wall
-    and of that of skin with the mean pigments, without gloss, under D65.
+def group_by_tone(measured: list[tuple[Portrait, list[float]]], decoder: SkinDecoder) -> Results:
+    """Average melanin and typology angles by skin tone.
 
-    Dark skin read as pale skin in little light shows here, where a rank may not.
+    `angle_by_wall` is measured by the wall. `angle_of_skin` is that of skin with the mean pigments,
+    without specular reflection, under D65. If dark skin is read as pale skin in little light, these
+    differ, although the rank may be right.
     """
     usable = [(one, pigments) for one, pigments in measured if np.isfinite(pigments).all()]
     if not usable:
         return {}
-    angles = wall_angles([one for one, _ in usable])
+    angles = compute_wall_angles([one for one, _ in usable])
     pigments = torch.tensor([pigments for _, pigments in usable], dtype=torch.float32)
-    read = typology_angle(under_daylight(*pigments.unbind(1), decoder))
+    read = typology_angle(render_under_daylight(*pigments.unbind(1), decoder))
     tones = [group(angle) for angle in angles.tolist()]
     found: Results = {}
     for name in sorted(set(tones), key=list(GROUPS).index):
@@ -211,10 +218,10 @@ def by_tone(measured: list[tuple[Portrait, list[float]]], decoder: SkinDecoder) 
     return found
 
 
-def wall_angles(some: Sequence[Portrait]) -> torch.Tensor:
-    """Typology angles [portraits] in degrees, measured by the wall.
+def compute_wall_angles(some: Sequence[Portrait]) -> torch.Tensor:
+    """Compute typology angles [portraits] in degrees, relative to the wall.
 
-    Each portrait's light is divided by its wall's; the wall keeps its median luminance.
+    The light of each portrait is divided by that of its wall; the median luminance of walls stays.
     """
     walls, colours = (np.stack([getattr(one, name) for one in some]) for name in ("wall", "colour"))
     grey = np.median(walls @ [0.2126, 0.7152, 0.0722])

@@ -1,4 +1,4 @@
-"""Pictures of the twin with the truth of their skin's pixels, in one long row."""
+"""Synthetic faces with the truth of their skin, pixel by pixel."""
 
 from typing import NamedTuple
 
@@ -14,12 +14,17 @@ from train.batch import Batch
 
 
 class Pixels(NamedTuple):
-    """What is said of each pixel of true skin; None where nothing is.
+    """A prediction or the truth for each pixel of true skin; None for what is not predicted.
 
-    `melanin`, `hemoglobin`, `shading`, `specular` [pixels]; `albedo` and `colour` [pixels, 3],
-    linear sRGB of the skin itself and of the photograph. `mask` [pictures, height, width] is of
-    whole pictures: where skin is said to be. `explained` [pixels, 3] is what skin, shading and
-    gloss make of the photograph without an offset.
+    Attributes:
+        melanin: Volume fraction, [pixels].
+        hemoglobin: Volume fraction, [pixels].
+        shading: Diffuse shading, [pixels].
+        specular: Specular reflection, [pixels].
+        albedo: Linear sRGB of the skin itself, [pixels, 3].
+        colour: Linear sRGB of the photograph, [pixels, 3].
+        mask: Where the pictures show skin, [pictures, height, width].
+        explained: Linear sRGB of the photograph without an offset, [pixels, 3].
     """
 
     melanin: Tensor
@@ -32,11 +37,14 @@ class Pixels(NamedTuple):
     explained: Tensor | None = None
 
 
-class Scene(NamedTuple):
-    """Photographs, uint8 sRGB [pictures, height, width, 3], and the truth.
+class Pictures(NamedTuple):
+    """Synthetic faces and their truth.
 
-    `picture` [pixels] numbers the picture of each pixel; `angle` [pictures] is the typology angle
-    of the mean true skin under D65 and the mean camera.
+    Attributes:
+        photographs: uint8 sRGB, [pictures, height, width, 3].
+        truth: True values of the pixels of skin.
+        picture: Number of the picture of each pixel, [pixels].
+        angle: Typology angle of the mean true skin under D65 and the mean camera, [pictures].
     """
 
     photographs: NDArray[np.uint8]
@@ -46,43 +54,43 @@ class Scene(NamedTuple):
 
     @property
     def skin(self) -> Tensor:
-        """Where there is skin, [pictures, height, width]."""
+        """Return the true skin mask, [pictures, height, width]."""
         assert self.truth.mask is not None
         return self.truth.mask
 
 
-def scene(batch: Batch, decoder: SkinDecoder) -> Scene:
-    """Pixels with a true skin mask above one half."""
+def collect_pictures(batch: Batch, decoder: SkinDecoder) -> Pictures:
+    """Collect the pixels whose true skin mask is above one half."""
     assert batch.truth is not None and batch.albedo is not None
     skin = batch.mask > 0.5
     maps = batch.truth
     truth = Pixels(
-        *(on(one, skin) for one in maps[:4]),
-        on(batch.albedo, skin),
-        on(rgb_to_linear_rgb(batch.photograph), skin),
+        *(select_skin(one, skin) for one in maps[:4]),
+        select_skin(batch.albedo, skin),
+        select_skin(rgb_to_linear_rgb(batch.photograph), skin),
         skin,
     )
     picture = skin.nonzero()[:, 0]
-    bytes_ = (255 * batch.photograph).round().to(torch.uint8).movedim(1, -1).contiguous()
-    colour = under_daylight(truth.melanin, truth.hemoglobin, decoder)
-    angle = typology_angle(mean_by(colour, picture, len(skin)))
-    return Scene(bytes_.numpy(), truth, picture, angle)
+    eight_bits = (255 * batch.photograph).round().to(torch.uint8).movedim(1, -1).contiguous()
+    colour = render_under_daylight(truth.melanin, truth.hemoglobin, decoder)
+    angle = typology_angle(average_by_picture(colour, picture, len(skin)))
+    return Pictures(eight_bits.numpy(), truth, picture, angle)
 
 
-def on(values: Tensor, skin: Tensor) -> Tensor:
-    """Values [b, h, w] or [b, 3, h, w] at the skin's pixels, [pixels] or [pixels, 3]."""
+def select_skin(values: Tensor, skin: Tensor) -> Tensor:
+    """Select values [b, h, w] or [b, 3, h, w] of skin as [pixels] or [pixels, 3]."""
     return (values if values.ndim == 3 else values.movedim(1, -1))[skin]
 
 
-def under_daylight(melanin: Tensor, hemoglobin: Tensor, decoder: SkinDecoder) -> Tensor:
-    """Linear sRGB [pixels, 3] of skin under D65, seen by the mean camera."""
+def render_under_daylight(melanin: Tensor, hemoglobin: Tensor, decoder: SkinDecoder) -> Tensor:
+    """Render skin under D65 and the mean camera as linear sRGB [pixels, 3]."""
     matrix = decoder.camera.matrix(decoder.camera.standard())
     image = decoder.albedo(melanin[None, None], hemoglobin[None, None], matrix[None])
     return image[0, :, 0].mT
 
 
-def mean_by(values: Tensor, picture: Tensor, count: int) -> Tensor:
-    """Means [pictures, ...] of [pixels, ...] in float64; NaN for a picture without skin."""
+def average_by_picture(values: Tensor, picture: Tensor, count: int) -> Tensor:
+    """Average [pixels, ...] to [pictures, ...] in float64; NaN for a picture without skin."""
     sums = values.new_zeros(count, *values.shape[1:], dtype=torch.float64)
     sums.index_add_(0, picture, values.double())
     number = picture.bincount(minlength=count).to(sums)

@@ -1,4 +1,4 @@
-"""The columns of the table: what a row's pixels are worth beside the truth."""
+"""The columns of the table: errors and correlations of a row."""
 
 from typing import Any
 
@@ -6,7 +6,7 @@ import torch
 from torch import Tensor
 
 from benchmarks.running_statistics import RunningStatistics
-from benchmarks.scene import Pixels, Scene, mean_by
+from benchmarks.scene import Pictures, Pixels, average_by_picture
 from benchmarks.typology import GROUPS, group
 from skinnet.network.autoencoder import F_MEL_MAX
 
@@ -19,11 +19,11 @@ COLUMNS = {
     "albedo": "albedo",
     "reconstruction": "colour",
 }
-"""RMSE over skin by its name, and whose it is."""
+"""Columns that hold an RMSE over skin, and the field of `Pixels` that each measures."""
 
 
 class Scores:
-    """Sums over the pictures that were added, and the columns they give."""
+    """Statistics of the pictures that were added, and the columns computed from them."""
 
     def __init__(self) -> None:
         self.pixel, self.image, self.grid = (
@@ -32,17 +32,19 @@ class Scores:
         self.columns = {name: RunningStatistics() for name in COLUMNS}
         self.groups = {name: RunningStatistics() for name in GROUPS}
         self.pictures = dict.fromkeys(GROUPS, 0)
-        self.leak, self.explained = RunningStatistics(), RunningStatistics()
-        self.overlap: Tensor | None = torch.zeros(2, dtype=torch.float64)
+        self.error_and_shading, self.explained = RunningStatistics(), RunningStatistics()
+        self.iou_sums: Tensor | None = torch.zeros(2, dtype=torch.float64)
 
-    def add(self, guess: Pixels, scene: Scene) -> None:
-        """Count in a row's pixels of some pictures."""
-        truth = scene.truth
+    def add(self, guess: Pixels, pictures: Pictures) -> None:
+        """Add the pixels of some pictures."""
+        truth = pictures.truth
         for name, most in PIGMENTS.items():
             both = getattr(guess, name), getattr(truth, name)
             self.pixel[name].add(*both)
             self.grid[name].add(*(2 * (one.double() / most) ** (1 / 3) - 1 for one in both))
-            by_picture = [mean_by(one, scene.picture, len(scene.angle)) for one in both]
+            by_picture = [
+                average_by_picture(one, pictures.picture, len(pictures.angle)) for one in both
+            ]
             seen = by_picture[1].isfinite()
             self.image[name].add(*(one[seen] for one in by_picture))
         for name, field in COLUMNS.items():
@@ -51,31 +53,31 @@ class Scores:
         if guess.explained is not None and truth.colour is not None:
             self.explained.add(guess.explained, truth.colour)
         assert truth.shading is not None
-        self.leak.add(guess.melanin - truth.melanin, truth.shading)
-        self._add_groups(guess, scene)
-        self._add_mask(guess.mask, scene.skin)
+        self.error_and_shading.add(guess.melanin - truth.melanin, truth.shading)
+        self._add_groups(guess, pictures)
+        self._add_mask(guess.mask, pictures.skin)
 
-    def _add_groups(self, guess: Pixels, scene: Scene) -> None:
-        for number, angle in enumerate(scene.angle.tolist()):
-            here = scene.picture == number
+    def _add_groups(self, guess: Pixels, pictures: Pictures) -> None:
+        for number, angle in enumerate(pictures.angle.tolist()):
+            here = pictures.picture == number
             if here.any():
                 self.pictures[group(angle)] += 1
-                self.groups[group(angle)].add(guess.melanin[here], scene.truth.melanin[here])
+                self.groups[group(angle)].add(guess.melanin[here], pictures.truth.melanin[here])
 
     def _add_mask(self, guess: Tensor | None, skin: Tensor) -> None:
-        if guess is None or self.overlap is None:
-            self.overlap = None
+        if guess is None or self.iou_sums is None:
+            self.iou_sums = None
         else:
-            self.overlap += torch.stack([(guess & skin).sum(), (guess | skin).sum()]).double()
+            self.iou_sums += torch.stack([(guess & skin).sum(), (guess | skin).sum()]).double()
 
-    def results(self, constant: "Scores") -> dict[str, Any]:
-        """Every column; `constant` has the scores of the constant predictor."""
-        relative = [one["relative_rmse"] for one in self.by_group().values()]
+    def compute_results(self, constant: "Scores") -> dict[str, Any]:
+        """Compute every column; `constant` has the scores of the constant predictor."""
+        relative = [one["relative_rmse"] for one in self.group_by_tone().values()]
         return {
             **{name: self._pigment(name, constant) for name in PIGMENTS},
             **{name: moments.rmse for name, moments in self.columns.items()},
-            "mask_iou": None if self.overlap is None else _ratio(*self.overlap.tolist()),
-            "leak": self.leak.r,
+            "mask_iou": None if self.iou_sums is None else _ratio(*self.iou_sums.tolist()),
+            "leak": self.error_and_shading.r,
             "group_ratio": _ratio(max(relative), min(relative)) if relative else None,
         }
 
@@ -89,8 +91,8 @@ class Scores:
             "grid_rmse": self.grid[name].rmse,
         }
 
-    def by_group(self) -> dict[str, dict[str, Any]]:
-        """Melanin by skin tone: pictures, mean of the truth, RMSE, and RMSE over that mean."""
+    def group_by_tone(self) -> dict[str, dict[str, Any]]:
+        """Compute melanin by skin tone: pictures, true mean, RMSE, and RMSE over that mean."""
         found = {}
         for name, moments in self.groups.items():
             if moments.rmse is not None and moments.truth:

@@ -1,4 +1,4 @@
-"""What is asked of the encoder, and its figures laid out beside that."""
+"""Targets of the encoder, and the table of its figures beside them."""
 
 from collections.abc import Iterator, Mapping
 from typing import Any
@@ -28,43 +28,43 @@ ASKED: dict[str, Any] = {
         "ita_rank": "|.| >= 0.9",
     },
 }
-"""Of stage 2, which is also to be better than every baseline in every column."""
+"""Targets of stage 2, which shall also be better than every baseline in every column."""
 
 HIGHER = ("r_pixel", "r_image", "mask_iou")
-"""Columns in which more is better; of the others, what is nearer to zero."""
+"""Columns in which more is better; in the others, nearer to zero is better."""
 
 
-def flat(results: Mapping[str, Any], prefix: str = "") -> Iterator[tuple[str, Any]]:
-    """Figures by their path."""
+def flatten(results: Mapping[str, Any], prefix: str = "") -> Iterator[tuple[str, Any]]:
+    """Yield figures by their path."""
     for name, value in results.items():
         if isinstance(value, Mapping):
-            yield from flat(value, f"{prefix}{name}.")
+            yield from flatten(value, f"{prefix}{name}.")
         else:
             yield prefix + name, value
 
 
-def not_beaten(results: Mapping[str, Any]) -> list[str] | None:
-    """ROW.COLUMN wherever a baseline is as good as stage 2 or better; None without stage 2."""
+def list_not_beaten(results: Mapping[str, Any]) -> list[str] | None:
+    """List ROW.COLUMN wherever a baseline is as good as stage 2 or better; None without stage 2."""
     if results["stage2"] is None:
         return None
-    best = dict(flat(results["stage2"]))
+    best = dict(flatten(results["stage2"]))
     return [
         f"{row}.{column}"
         for row in ROWS[:3]
-        for column, value in flat(results[row])
+        for column, value in flatten(results[row])
         if value is not None and best.get(column) is not None
-        if _worth(column, value) >= _worth(column, best[column])
+        if _rank(column, value) >= _rank(column, best[column])
     ]
 
 
-def _worth(column: str, value: float) -> float:
+def _rank(column: str, value: float) -> float:
     return value if column.endswith(HIGHER) else -abs(value)
 
 
-def layout(results: Mapping[str, Any]) -> str:
-    """The rows as columns of text, what is asked on the right, then all else line by line."""
-    table = {row: dict(flat(results[row] or {})) for row in ROWS}
-    asked = dict(flat(results["asked"]))
+def lay_out(results: Mapping[str, Any]) -> str:
+    """Write the rows as columns of text with their targets, then all else line by line."""
+    table = {row: dict(flatten(results[row] or {})) for row in ROWS}
+    asked = dict(flatten(results["asked"]))
     names = list(dict.fromkeys(name for row in table.values() for name in row))
     lines = [_line("", [*ROWS, "asked"])]
     for name in names:
@@ -72,14 +72,14 @@ def layout(results: Mapping[str, Any]) -> str:
         lines.append(_line(name, [*cells, asked.get(name, "")]))
     lines += ["", *_groups(results["groups"]), ""]
     rest = {name: results[name] for name in ("portraits", "explained", "not_beaten", "settings")}
-    for name, value in flat(rest):
+    for name, value in flatten(rest):
         wanted = asked.get(name, asked.get(_without_disturbance(name), ""))
         lines.append(f"{name:44}{_cell(value):>9}  {wanted}".rstrip())
     return "\n".join(lines)
 
 
 def _groups(groups: Mapping[str, Any]) -> list[str]:
-    """RMSE of melanin relative to its mean, by skin tone."""
+    """Lines of the RMSE of melanin relative to its mean, by skin tone."""
     tones = next(iter(groups.values()))
     lines = [_line("melanin, relative rmse", ["pictures", "mean", *groups])]
     for tone, one in tones.items():

@@ -13,9 +13,9 @@ from skimage.data import astronaut
 
 from benchmarks import disturbances, encoder, portraits, targets
 from benchmarks.baselines import Lookup, Tsumura
-from benchmarks.reader import NetworkReader, composed
+from benchmarks.reader import NetworkReader, compose
 from benchmarks.running_statistics import RunningStatistics
-from benchmarks.scene import Pixels, Scene, under_daylight
+from benchmarks.scene import Pictures, Pixels, render_under_daylight
 from benchmarks.scores import Scores
 from benchmarks.typology import GROUPS, group, typology_angle
 from skinnet.network.autoencoder import AutoencoderConfig, SkinAutoencoder, SkinMaps
@@ -42,16 +42,16 @@ def found(model: SkinAutoencoder, tmp_path_factory: pytest.TempPathFactory) -> d
 
 
 @pytest.fixture(scope="module")
-def skins() -> Scene:
+def skins() -> Pictures:
     """Six even skins, ever darker, without shading or gloss, as their true colour shows them."""
     melanin = torch.logspace(-1.9, -0.6, 6).repeat_interleave(16)
     hemoglobin = torch.full_like(melanin, 0.04)
-    albedo = under_daylight(melanin, hemoglobin, SkinDecoder())
+    albedo = render_under_daylight(melanin, hemoglobin, SkinDecoder())
     one = torch.ones_like(melanin)
     mask = torch.ones(6, 4, 4, dtype=torch.bool)
     truth = Pixels(melanin, hemoglobin, one, 0 * one, albedo, albedo, mask)
     angle = typology_angle(albedo[::16])
-    return Scene(np.zeros((6, 4, 4, 3), np.uint8), truth, mask.nonzero()[:, 0], angle)
+    return Pictures(np.zeros((6, 4, 4, 3), np.uint8), truth, mask.nonzero()[:, 0], angle)
 
 
 def test_its_keys_are_the_contract(found: dict[str, Any]) -> None:
@@ -61,22 +61,22 @@ def test_its_keys_are_the_contract(found: dict[str, Any]) -> None:
     assert found["stage1"] is None and found["portraits"] is None
     assert found["constant"]["melanin"]["rmse_ratio"] == 1
     assert found["constant"]["melanin"]["r_pixel"] is None
-    assert all(value is not None for _, value in targets.flat(found["stage2"]))
+    assert all(value is not None for _, value in targets.flatten(found["stage2"]))
     assert json.loads(json.dumps(found, allow_nan=False))["settings"]["samples"] == 4
     assert found["settings"]["weights"] == {} and found["explained"]["stage2"] > 0
-    assert targets.not_beaten(found | {"stage2": None}) is None
+    assert targets.list_not_beaten(found | {"stage2": None}) is None
 
 
 def test_its_table_has_a_line_a_column_with_what_is_asked(found: dict[str, Any]) -> None:
-    lines = {line.split()[0]: line.split() for line in targets.layout(found).splitlines() if line}
+    lines = {line.split()[0]: line.split() for line in targets.lay_out(found).splitlines() if line}
     assert lines["melanin.r_image"][-2:] == [">=", "0.98"]
     assert lines["diffuse"][4] == "-" and len(lines["diffuse"]) == 6
 
 
-def test_perfect_predictions_have_no_error(skins: Scene) -> None:
+def test_perfect_predictions_have_no_error(skins: Pictures) -> None:
     scores = Scores()
     scores.add(skins.truth, skins)
-    results = scores.results(scores)
+    results = scores.compute_results(scores)
     for name in ("diffuse", "specular", "albedo", "reconstruction"):
         assert results[name] == 0
     assert results["melanin"]["rmse"] == results["melanin"]["grid_rmse"] == 0
@@ -85,12 +85,12 @@ def test_perfect_predictions_have_no_error(skins: Scene) -> None:
     assert results["mask_iou"] == 1 and results["leak"] is None
 
 
-def test_shading_read_as_melanin_is_a_leak(skins: Scene) -> None:
+def test_shading_read_as_melanin_is_a_leak(skins: Pictures) -> None:
     shading = torch.rand(len(skins.picture), generator=torch.Generator().manual_seed(0))
     lit = skins._replace(truth=skins.truth._replace(shading=shading))
     scores = Scores()
     scores.add(lit.truth._replace(melanin=lit.truth.melanin - 0.01 * shading), lit)
-    assert scores.results(scores)["leak"] == pytest.approx(-1)
+    assert scores.compute_results(scores)["leak"] == pytest.approx(-1)
 
 
 def test_moments_are_numpy_s() -> None:
@@ -115,20 +115,20 @@ def test_typology_angle_is_that_of_colour_science() -> None:
     assert [group(angle) for angle in (60, 50, 30, 20, 0, -50)] == list(GROUPS)
 
 
-def test_baselines_sort_plain_skins(skins: Scene) -> None:
+def test_baselines_sort_plain_skins(skins: Pictures) -> None:
     decoder = SkinDecoder()
     lookup, ica = Lookup(decoder), Tsumura(decoder)
-    ica.learn(skins)
+    ica.fit(skins)
     by_table, by_directions = lookup(skins), ica(skins)
     assert torch.allclose(by_table.melanin, skins.truth.melanin, atol=2e-3)
     assert torch.allclose(by_table.hemoglobin, skins.truth.hemoglobin, atol=2e-3)
     assert (by_directions.melanin[::16].diff() > 0).all()
 
 
-def test_the_table_groups_all_tones(skins: Scene) -> None:
+def test_the_table_groups_all_tones(skins: Pictures) -> None:
     scores = Scores()
     scores.add(skins.truth._replace(melanin=1.1 * skins.truth.melanin), skins)
-    groups = scores.by_group()
+    groups = scores.group_by_tone()
     assert sum(one["pictures"] for one in groups.values()) == 6 and len(groups) >= 4
     assert all(one["relative_rmse"] == pytest.approx(0.1, rel=0.2) for one in groups.values())
 
@@ -137,7 +137,7 @@ def test_a_photograph_is_composed_as_the_decoder_does(model: SkinAutoencoder) ->
     photograph = astronaut()[:32, :32].copy()
     maps, capture = NetworkReader(model)(photograph)
     reading = model(torch.from_numpy(photograph).movedim(-1, 0)[None] / 255)
-    image = composed(maps, capture, model.decoder).image
+    image = compose(maps, capture, model.decoder).image
     assert torch.allclose(image, reading.reconstruction.clamp(0, 1), atol=1e-5)
     assert NetworkReader(model)(astronaut()[:50, :40].copy())[0].offset.shape == (1, 3, 50, 40)
 
@@ -176,13 +176,13 @@ def test_disturbances_do_what_they_say() -> None:
     white = colour.XYZ_to_RGB([x / y, 1, (1 - x - y) / y], "sRGB", apply_cctf_encoding=False)
     x, y = colour.temperature.CCT_to_xy_CIE_D(6500)
     before = colour.XYZ_to_RGB([x / y, 1, (1 - x - y) / y], "sRGB", apply_cctf_encoding=False)
-    assert disturbances.balance(7000.0) == pytest.approx(white / before, abs=0.01)
+    assert disturbances.compute_gain(7000.0) == pytest.approx(white / before, abs=0.01)
 
 
 def test_skins_are_measured_by_their_wall() -> None:
     """Whatever the light, its colour and exposure are taken off with the wall's."""
     melanin = torch.logspace(-1.7, -0.6, 6)
-    skin = under_daylight(melanin, torch.full_like(melanin, 0.04), SkinDecoder()).numpy()
+    skin = render_under_daylight(melanin, torch.full_like(melanin, 0.04), SkinDecoder()).numpy()
     light = np.random.default_rng(0).uniform(0.5, 1.5, (6, 3))
     light /= np.median(light @ [0.2126, 0.7152, 0.0722])
     blank = np.zeros((1, 1, 3), np.uint8), np.ones((1, 1), bool)
@@ -195,8 +195,8 @@ def test_skins_are_measured_by_their_wall() -> None:
         )
         for rgb, one, m in zip(skin, light, melanin.tolist(), strict=True)
     ]
-    assert portraits.ita_rank(measured) == pytest.approx(-1)
-    found = portraits.by_tone([(one, [m, 0.04]) for one, m in measured], SkinDecoder())
+    assert portraits.rank_by_angle(measured) == pytest.approx(-1)
+    found = portraits.group_by_tone([(one, [m, 0.04]) for one, m in measured], SkinDecoder())
     assert list(found) == [name for name in GROUPS if name in found] and len(found) > 2
     assert sum(tone["portraits"] for tone in found.values()) == 6
     for tone in found.values():

@@ -150,6 +150,8 @@ class SkinAutoencoder(nn.Module):
         decoder.
 
     Example:
+        >>> import torch
+        >>> from skinnet import SkinAutoencoder
         >>> model = SkinAutoencoder.from_pretrained()
         >>> with torch.no_grad():
         ...     reading = model(torch.full((1, 3, 64, 64), 0.5))
@@ -178,6 +180,7 @@ class SkinAutoencoder(nn.Module):
             InputError: for a file that is missing, truncated, of another format or not of skinnet.
 
         Example:
+            >>> from skinnet import SkinAutoencoder
             >>> SkinAutoencoder.from_pretrained().config.working_size
             160
         """

@@ -28,6 +28,7 @@ def read_checkpoint(path: str | Path) -> dict[str, Any]:
         InputError: for a file that is missing, truncated, of another format or not of skinnet.
 
     Example:
+        >>> from skinnet.network import read_checkpoint
         >>> read_checkpoint("absent.ckpt")
         Traceback (most recent call last):
         ...

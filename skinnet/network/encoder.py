@@ -64,6 +64,8 @@ class SkinEncoder(nn.Module):
         al. 2017 (FC4, the confidence-weighted vote).
 
     Example:
+        >>> import torch
+        >>> from skinnet import SkinEncoder
         >>> encoder = SkinEncoder(map_channels=5, global_channels=18, widths=(4, 8)).eval()
         >>> photograph = torch.rand(1, 3, 17, 33)
         >>> maps, global_outputs = encoder(photograph, photograph**2.2)

@@ -48,6 +48,7 @@ def appearance_l1(reconstruction: Image, photograph: Image, weight: Map) -> Scal
 
     Example:
         >>> import torch
+        >>> from skinnet.network import appearance_l1
         >>> dark, weight = torch.zeros(1, 3, 4, 4), torch.ones(1, 4, 4)
         >>> appearance_l1(dark + 0.25, dark, weight).item()
         0.25
@@ -69,7 +70,8 @@ def camera_prior(capture: Capture) -> Scalar:
         mean(b^2) / 2 + mean((w / 0.05)^2) / 2, for coefficients b and white-balance errors w.
 
     Example:
-        >>> from skinnet.physics.camera import SpectralCamera
+        >>> from skinnet.network import camera_prior
+        >>> from skinnet.physics import SpectralCamera
         >>> camera_prior(SpectralCamera().standard((1,))).item()
         0.0
     """
@@ -91,6 +93,7 @@ def specular_sparsity(maps: SkinMaps, mask: Map) -> Scalar:
 
     Example:
         >>> import torch
+        >>> from skinnet.network import SkinMaps, specular_sparsity
         >>> values = torch.full((4, 1, 8, 8), 0.05)
         >>> mask = torch.ones(1, 8, 8)
         >>> maps = SkinMaps(*values, torch.zeros(1, 3, 8, 8), mask)
@@ -112,6 +115,7 @@ def shading_smoothness(maps: SkinMaps, mask: Map) -> Scalar:
 
     Example:
         >>> import torch
+        >>> from skinnet.network import SkinMaps, shading_smoothness
         >>> values = torch.full((4, 1, 8, 8), 0.05)
         >>> mask = torch.ones(1, 8, 8)
         >>> maps = SkinMaps(*values, torch.zeros(1, 3, 8, 8), mask)
@@ -139,6 +143,7 @@ def shading_from_luminance(maps: SkinMaps, photograph: Image, mask: Map) -> Scal
 
     Example:
         >>> import torch
+        >>> from skinnet.network import SkinMaps, shading_from_luminance
         >>> values = torch.full((4, 1, 8, 8), 0.05)
         >>> mask = torch.ones(1, 8, 8)
         >>> maps = SkinMaps(*values, torch.zeros(1, 3, 8, 8), mask)
@@ -165,6 +170,7 @@ def off_skin_shading(maps: SkinMaps, mask: Map) -> Scalar:
 
     Example:
         >>> import torch
+        >>> from skinnet.network import SkinMaps, off_skin_shading
         >>> values = torch.full((4, 1, 8, 8), 0.05)
         >>> mask = torch.ones(1, 8, 8)
         >>> maps = SkinMaps(*values, torch.zeros(1, 3, 8, 8), mask)
@@ -186,6 +192,7 @@ def mask_cross_entropy(maps: SkinMaps, mask: Map) -> Scalar:
 
     Example:
         >>> import torch
+        >>> from skinnet.network import SkinMaps, mask_cross_entropy
         >>> values = torch.full((4, 1, 8, 8), 0.05)
         >>> mask = torch.ones(1, 8, 8)
         >>> maps = SkinMaps(*values, torch.zeros(1, 3, 8, 8), mask)
@@ -215,6 +222,7 @@ def soft_iou(maps: SkinMaps, mask: Map) -> Scalar:
 
     Example:
         >>> import torch
+        >>> from skinnet.network import SkinMaps, soft_iou
         >>> values = torch.full((4, 1, 8, 8), 0.05)
         >>> mask = torch.ones(1, 8, 8)
         >>> maps = SkinMaps(*values, torch.zeros(1, 3, 8, 8), mask)
@@ -243,6 +251,7 @@ def pigment_l1(maps: SkinMaps, truth: SkinMaps) -> Scalar:
 
     Example:
         >>> import torch
+        >>> from skinnet.network import F_MEL_MAX, SkinMaps, pigment_l1
         >>> values = torch.full((4, 1, 8, 8), 0.05)
         >>> mask = torch.ones(1, 8, 8)
         >>> maps = SkinMaps(*values, torch.zeros(1, 3, 8, 8), mask)
@@ -270,6 +279,8 @@ def pigment_mse(maps: SkinMaps, truth: SkinMaps) -> Scalar:
 
     Example:
         >>> import torch
+        >>> from skinnet.network import SkinMaps, pigment_mse
+        >>> from skinnet.network.losses import PIGMENT_SD
         >>> values = torch.full((4, 1, 8, 8), 0.05)
         >>> mask = torch.ones(1, 8, 8)
         >>> maps = SkinMaps(*values, torch.zeros(1, 3, 8, 8), mask)
@@ -303,6 +314,7 @@ def error_shading_covariance(maps: SkinMaps, truth: SkinMaps) -> Scalar:
 
     Example:
         >>> import torch
+        >>> from skinnet.network import SkinMaps, error_shading_covariance
         >>> values = torch.full((4, 1, 8, 8), 0.05)
         >>> mask = torch.ones(1, 8, 8)
         >>> maps = SkinMaps(*values, torch.zeros(1, 3, 8, 8), mask)
@@ -328,6 +340,7 @@ def augmentation_consistency(maps: SkinMaps, mask: Map) -> Scalar:
 
     Example:
         >>> import torch
+        >>> from skinnet.network import SkinMaps, augmentation_consistency
         >>> values = torch.full((4, 1, 8, 8), 0.05)
         >>> mask = torch.ones(1, 8, 8)
         >>> maps = SkinMaps(*values, torch.zeros(1, 3, 8, 8), mask)
@@ -356,6 +369,7 @@ def lighting_error(maps: SkinMaps, truth: SkinMaps) -> Scalar:
 
     Example:
         >>> import torch
+        >>> from skinnet.network import SkinMaps, lighting_error
         >>> values = torch.full((4, 1, 8, 8), 0.05)
         >>> mask = torch.ones(1, 8, 8)
         >>> maps = SkinMaps(*values, torch.zeros(1, 3, 8, 8), mask)
@@ -379,7 +393,8 @@ def white_balance_l1(capture: Capture, truth: Capture) -> Scalar:
 
     Example:
         >>> import torch
-        >>> from skinnet.physics.camera import SpectralCamera
+        >>> from skinnet.network import white_balance_l1
+        >>> from skinnet.physics import SpectralCamera
         >>> perfect = SpectralCamera().standard((1,))
         >>> other = perfect._replace(white_balance=torch.full((1, 2), 0.05))
         >>> white_balance_l1(other, perfect).item()
