@@ -5,8 +5,8 @@ from collections.abc import Iterable, Mapping
 import torch
 from torch import Tensor
 
+from benchmarks.pictures import Pictures, Pixels, render_under_daylight
 from benchmarks.running_statistics import RunningStatistics
-from benchmarks.scene import Pictures, Pixels, render_under_daylight
 from skinnet.physics import SkinDecoder
 
 DIRECTIONS = (

@@ -31,10 +31,10 @@ from torch import Tensor
 from torch.utils.data import DataLoader
 
 from benchmarks.baselines import Constant, Lookup, Tsumura, average_skin
+from benchmarks.pictures import Pictures, Pixels, collect_pictures
 from benchmarks.portraits import measure_portraits
 from benchmarks.reader import Encoder, NetworkReader
 from benchmarks.report import Results, main
-from benchmarks.scene import Pictures, Pixels, collect_pictures
 from benchmarks.scores import Scores
 from benchmarks.targets import ASKED, lay_out, list_not_beaten
 from skinnet._version import __version__

@@ -16,10 +16,10 @@ from numpy.typing import NDArray
 from scipy.stats import spearmanr
 
 from benchmarks.disturbances import DISTURBANCES, MIRRORED
+from benchmarks.pictures import render_under_daylight
 from benchmarks.reader import Reader, compose, resize_maps
 from benchmarks.report import Results
 from benchmarks.running_statistics import RunningStatistics
-from benchmarks.scene import render_under_daylight
 from benchmarks.typology import GROUPS, group, typology_angle
 from skinnet.images import find_face, frame_head, read_photo, resize, segment_skin, srgb_to_linear
 from skinnet.network.autoencoder import SkinMaps

@@ -9,7 +9,7 @@ import torch.nn.functional as F
 from numpy.typing import NDArray
 from torch import Tensor
 
-from benchmarks.scene import Pictures, Pixels, select_skin
+from benchmarks.pictures import Pictures, Pixels, select_skin
 from skinnet.images import resize
 from skinnet.network.autoencoder import SkinAutoencoder, SkinMaps
 from skinnet.physics import Capture, SkinDecoder

@@ -5,8 +5,8 @@ from typing import Any
 import torch
 from torch import Tensor
 
+from benchmarks.pictures import Pictures, Pixels, average_by_picture
 from benchmarks.running_statistics import RunningStatistics
-from benchmarks.scene import Pictures, Pixels, average_by_picture
 from benchmarks.typology import GROUPS, group
 from skinnet.network.autoencoder import F_MEL_MAX
 

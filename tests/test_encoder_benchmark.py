@@ -13,9 +13,9 @@ from skimage.data import astronaut
 
 from benchmarks import disturbances, encoder, portraits, targets
 from benchmarks.baselines import Lookup, Tsumura
+from benchmarks.pictures import Pictures, Pixels, render_under_daylight
 from benchmarks.reader import NetworkReader, compose
 from benchmarks.running_statistics import RunningStatistics
-from benchmarks.scene import Pictures, Pixels, render_under_daylight
 from benchmarks.scores import Scores
 from benchmarks.typology import GROUPS, group, typology_angle
 from skinnet.network.autoencoder import AutoencoderConfig, SkinAutoencoder, SkinMaps
