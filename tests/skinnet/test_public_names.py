@@ -41,7 +41,7 @@ def test_every_public_name_is_there(name: str) -> None:
 
 
 def test_other_names_are_not_there() -> None:
-    with pytest.raises(AttributeError, match="No skinnet attribute Skin$"):
+    with pytest.raises(AttributeError, match=r"No skinnet attribute Skin$"):
         _ = skinnet.Skin
 
 

@@ -1,31 +1,17 @@
-import json
 import math
 from collections.abc import Callable
 from pathlib import Path
 
 import numpy as np
-import onnx
 import pytest
-from onnx import TensorProto, helper
 from PIL import Image
 
-from skinnet import Decomposer, Decomposition, __version__
+from skinnet import Decomposer, Decomposition
 from skinnet.errors import InputError, NoFaceError
 from skinnet.images import Box, srgb_to_linear
-from skinnet.inference import draw_panel, open_model, round_up
-from skinnet.inference._editing import apply_gain, compute_gain, fade_edges
+from skinnet.inference import open_model
 
 SaveModel = Callable[..., Path]
-
-
-@pytest.fixture(scope="module")
-def decomposer(model_file: Path) -> Decomposer:
-    return Decomposer(model_file, threads=1)
-
-
-@pytest.fixture(scope="module")
-def decomposition(decomposer: Decomposer, astronaut: np.ndarray) -> Decomposition:
-    return decomposer(astronaut)
 
 
 def test_maps_have_the_size_of_the_photograph(decomposition: Decomposition) -> None:
@@ -71,30 +57,6 @@ def test_paths_images_and_arrays_give_the_same(
     Image.fromarray(astronaut).save(path)
     for image in (path, str(path), Image.fromarray(astronaut), astronaut / 255):
         np.testing.assert_array_equal(decomposer(image).melanin, decomposition.melanin)
-
-
-def test_the_summary_is_json_of_what_the_arrays_hold(decomposition: Decomposition) -> None:
-    summary = json.loads(json.dumps(decomposition.summary(), allow_nan=False))
-    skin = decomposition.mask > 0.5
-    melanin = summary["maps"]["melanin"]
-    assert melanin["unit"] == "melanosome volume fraction"
-    assert melanin["mean"] == pytest.approx(decomposition.melanin[skin].mean(), rel=1e-4)
-    assert melanin["std"] == pytest.approx(decomposition.melanin[skin].std(), rel=1e-4)
-    assert melanin["p5"] < melanin["mean"] < melanin["p95"]
-    assert summary["skin_share"] == pytest.approx(skin[decomposition.box.slices].mean(), rel=1e-4)
-    assert summary["box"] == decomposition.box._asdict()
-    assert summary["photo"] == {"width": 512, "height": 512}
-    assert summary["version"] == __version__
-    assert summary["model"] == {"version": "0.1.0", "trained_on": "nothing"}
-
-
-def test_without_skin_the_numbers_are_none(skinless_file: Path, astronaut: np.ndarray) -> None:
-    decomposition = Decomposer(skinless_file)(astronaut)
-    summary = decomposition.summary()
-    assert summary["skin_share"] == 0
-    assert summary["maps"]["hemoglobin"]["mean"] is None
-    assert draw_panel(astronaut, decomposition).dtype == np.uint8
-    np.testing.assert_array_equal(Decomposer(skinless_file).edit(astronaut, 3.0), astronaut)
 
 
 def test_without_a_face_nothing_is_guessed(decomposer: Decomposer, tmp_path: Path) -> None:
@@ -149,26 +111,6 @@ def test_factors_out_of_range_are_refused(
         decomposer.edit(astronaut, **{pigment: factor})
 
 
-def test_gain_is_exactly_one_where_nothing_changes() -> None:
-    colours = np.random.default_rng(0).random((6, 5, 3), np.float32)
-    colours[0] = 0
-    assert (compute_gain(colours, colours, np.zeros((6, 5), np.float32)) == 1).all()
-
-
-def test_gloss_is_not_tinted() -> None:
-    crop = np.full((8, 8, 3), 200, np.uint8)
-    ones = np.ones((4, 4), np.float32)
-    gain = np.full((4, 4, 3), 0.5, np.float32)
-    np.testing.assert_array_equal(apply_gain(crop, gain, ones, ones), crop)
-    assert (apply_gain(crop, gain, 0 * ones, ones) < 150).all()
-
-
-def test_edits_fade_towards_edges_inside_the_photograph() -> None:
-    fade = fade_edges((50, 50), Box(0, 10, 60, 70), (100, 60))
-    assert fade[25, 0] == fade[25, -1] == 1
-    assert fade[0, 25] < 0.2 and fade[-1, 25] < 0.2
-
-
 def test_files_are_opened_at_the_first_photograph_and_once(
     model_file: Path, astronaut: np.ndarray, monkeypatch: pytest.MonkeyPatch
 ) -> None:
@@ -191,58 +133,6 @@ def test_threads_are_counted_from_one(model_file: Path) -> None:
         Decomposer(model_file, threads=0)
 
 
-@pytest.mark.parametrize("content", [b"", b"onnx?" * 50, "truncated"])
-def test_damaged_model_files_are_refused(save_model: SaveModel, content: bytes | str) -> None:
-    path = save_model()
-    whole = path.read_bytes()
-    path.write_bytes(whole[: len(whole) // 2] if isinstance(content, str) else content)
-    with pytest.raises(InputError, match=r"changed\.onnx is not a complete ONNX file .*python -m"):
-        Decomposer(path).load()
-
-
-def test_missing_model_files_are_named(save_model: SaveModel, tmp_path: Path) -> None:
-    with pytest.raises(InputError, match=r"There is no encoder file .*none\.onnx; give"):
-        Decomposer(tmp_path / "none.onnx").load()
-    path = save_model()
-    path.with_name("changed.decoder.onnx").unlink()
-    with pytest.raises(InputError, match=r"There is no decoder file .*changed\.decoder\.onnx"):
-        Decomposer(path).load()
-
-
-@pytest.mark.parametrize(
-    ("notes", "words"),
-    [
-        ({"kind": None}, "is an ONNX file, but not one of skinnet's"),
-        ({"format": "2"}, "has format 2, and this skinnet reads format 1; export it again"),
-        ({"format": None}, "has format None"),
-        ({"kind": "decoder"}, "is a decoder, but an encoder is needed"),
-        ({"lights": "D, A"}, "The metadata of .* is damaged"),
-        ({"working_size": "large"}, "The metadata of .* is damaged"),
-        ({"working_size": "0"}, "The metadata of .* is damaged"),
-        ({"outputs": "{}"}, "The metadata of .* is damaged"),
-        ({"outputs": None}, "The metadata of .* is damaged"),
-    ],
-)
-def test_other_metadata_are_refused(
-    save_model: SaveModel, notes: dict[str, str | None], words: str
-) -> None:
-    with pytest.raises(InputError, match=words):
-        Decomposer(save_model(**notes)).load()
-
-
-def test_a_file_with_other_outputs_is_refused(tmp_path: Path) -> None:
-    value = helper.make_tensor_value_info("x", TensorProto.FLOAT, [1])
-    other = helper.make_tensor_value_info("y", TensorProto.FLOAT, [1])
-    graph = helper.make_graph([helper.make_node("Neg", ["x"], ["y"])], "g", [value], [other])
-    model = helper.make_model(graph, opset_imports=[helper.make_opsetid("", 20)], ir_version=10)
-    helper.set_model_props(model, {"skinnet.kind": "encoder", "skinnet.format": "1"})
-    onnx.save(model, tmp_path / "a.onnx")
-    with pytest.raises(
-        InputError, match="says that it is an encoder, but its inputs are x and its outputs y"
-    ):
-        Decomposer(tmp_path / "a.onnx").load()
-
-
 def test_lights_that_are_not_weighed_are_refused(
     save_model: SaveModel, astronaut: np.ndarray
 ) -> None:
@@ -255,19 +145,3 @@ def test_lights_that_are_not_weighed_are_refused(
 def test_bad_arrays_are_value_errors(decomposer: Decomposer, image: np.ndarray) -> None:
     with pytest.raises(ValueError, match="A photograph"):
         decomposer(image)
-
-
-def test_the_panel_shows_eight_pictures(
-    decomposition: Decomposition, astronaut: np.ndarray
-) -> None:
-    picture = draw_panel(astronaut, decomposition)
-    assert picture.shape == (806, 1290, 3) and picture.dtype == np.uint8
-    tiles = [picture[y + 30 : y + 330, x : x + 300] for y in (18, 412) for x in (18, 336, 654, 972)]
-    assert all(tile.std() > 10 for tile in tiles)
-
-
-@pytest.mark.parametrize(
-    ("value", "top"), [(0.14, 0.15), (0.15, 0.15), (0.9, 1), (1, 1), (0, 1e-6), (37, 40)]
-)
-def test_scales_end_at_round_numbers(value: float, top: float) -> None:
-    assert round_up(float(value)) == pytest.approx(top)

@@ -1,0 +1,46 @@
+from pathlib import Path
+
+import pytest
+
+from skinnet.errors import InputError
+from skinnet.files import make_folder, write_atomically, write_text, write_together
+
+
+def test_a_failed_write_leaves_what_was_there(tmp_path: Path) -> None:
+    path = tmp_path / "a.txt"
+    write_text(path, "old")
+
+    def fail() -> None:
+        with write_atomically(path) as part:
+            part.write_text("ne")
+            raise RuntimeError
+
+    with pytest.raises(RuntimeError):
+        fail()
+    assert [file.read_text() for file in tmp_path.iterdir()] == ["old"]
+
+
+def write_two(folder: Path, first: str, second: str, content: str | None) -> None:
+    with write_together() as temporary:
+        temporary(folder / first).write_text("1")
+        path = temporary(folder / second)
+        if content is not None:
+            path.write_text(content)
+
+
+def test_files_are_written_together_or_not_at_all(tmp_path: Path) -> None:
+    (tmp_path / "b").mkdir()
+    with pytest.raises(InputError, match="b is a folder"):
+        write_two(tmp_path, "a", "b", "2")
+    with pytest.raises(FileNotFoundError):  # the second file is never written
+        write_two(tmp_path, "c", "d", None)
+    assert [file.name for file in tmp_path.iterdir()] == ["b"]
+    write_two(tmp_path, "e", "f", "2")
+    assert sorted(file.name for file in tmp_path.iterdir()) == ["b", "e", "f"]
+
+
+def test_a_folder_that_cannot_be_made_is_named(tmp_path: Path) -> None:
+    assert make_folder(tmp_path / "a" / "b", "choose another").is_dir()
+    (tmp_path / "file").write_text("")
+    with pytest.raises(InputError, match=r"file/b cannot be made \(Not a directory\); choose"):
+        make_folder(tmp_path / "file" / "b", "choose another")
