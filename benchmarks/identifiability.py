@@ -1,15 +1,15 @@
-"""What the colours of a face can tell of its pigments, under what the twin leaves unknown.
+"""What colours tell of the pigments of a face, under the unknowns of the synthetic renderer.
 
     python -m benchmarks.identifiability [--json]
 
-No picture is drawn: patches of skin with the twin's own pigments are seen by its lights, cameras,
-white balance and tone curves, in shading of unknown strength under its gloss, in eight bits. A
-network of two layers is trained on 60,000 such lots to give the mean pigments, and scored on
-10,000 others by the test's cameras: about the best that a reader of colours alone can do. `patch`
-sees the base of a skin, `face` its forehead, cheeks, nose, lids, lips and chin, each in shading of
-its own. The `told` are also given the error of the white balance, exactly, as the rest of a
-picture can only estimate it. What is unknown is taken away step by step; RMSE is relative to that
-of the mean.
+Patches of skin have the pigments, lights, cameras, white balances and tone curves of the synthetic
+faces, a shading of unknown strength, specular reflection, and eight bits. A network of two layers
+is trained on 60,000 such faces to predict the mean pigments, and scored on 10,000 others under the
+cameras of the test split. This is about the best that a reader of colours alone can reach. `patch`
+sees the base of a skin. `face` sees its forehead, cheeks, nose, lids, lips and chin, each in a
+shading of its own. The rows `told` are also given the exact error of the white balance, which the rest of a
+picture can only estimate. The unknowns are removed step by step. RMSE is relative to that of the
+mean.
 """
 
 from collections.abc import Callable
@@ -30,99 +30,111 @@ from train.synthetic.scene_sampling import (
 )
 from train.synthetic.simulated_camera import pictured, toned
 
-DRAWN, SCORED, STEPS, BATCH = 70_000, 10_000, 1500, 4096
-GLOSS = 0.032, 0.38
-"""Median gloss of the twin's faces relative to their light, and the spread of its logarithm."""
+SAMPLES, SCORED, STEPS, BATCH = 70_000, 10_000, 1500, 4096
+SPECULAR = 0.032, 0.38
+"""Median specular reflection of synthetic faces, and the standard deviation of its logarithm."""
 
-Lot = dict[str, Tensor]
-Change = Callable[[Lot], Lot]
+Faces = dict[str, Tensor]
+Change = Callable[[Faces], Faces]
 
 
 def measure() -> Results:
-    """Correlations and relative errors, from all that is unknown to nothing."""
+    """Measure correlations and relative errors, from all unknowns to none."""
     torch.manual_seed(0)
-    lot = draw(DRAWN)
+    faces = sample_faces(SAMPLES)
     decoder = SkinDecoder()
     cases: dict[str, tuple[Change, bool]] = {
-        "everything_unknown": (lambda lot: lot, True),
-        "no_tone_curve": (_even, True),
-        "and_daylight_d65": (lambda lot: _daylight(_even(lot)), True),
-        "and_mean_camera": (lambda lot: _daylight(_even(lot)), False),
+        "everything_unknown": (lambda faces: faces, True),
+        "no_tone_curve": (_remove_tone_curve, True),
+        "and_daylight_d65": (lambda faces: _use_daylight(_remove_tone_curve(faces)), True),
+        "and_mean_camera": (lambda faces: _use_daylight(_remove_tone_curve(faces)), False),
     }
     return {
-        name: read(change(lot), decoder, measured) for name, (change, measured) in cases.items()
+        name: score_readers(change(faces), decoder, measured)
+        for name, (change, measured) in cases.items()
     }
 
 
-def read(lot: Lot, decoder: SkinDecoder, measured: bool) -> Results:
-    """What readers of a patch and of a face make of a lot, told its white balance and not."""
+def score_readers(faces: Faces, decoder: SkinDecoder, measured: bool) -> Results:
+    """Score readers of a patch and of a face, with and without the white balance."""
     found: Results = {}
     for name, some in {"patch": slice(0, 1), "face": slice(1, None)}.items():
-        part = lot | {key: lot[key][:, some] for key in ("f_mel", "f_blood", "shading")}
+        part = faces | {key: faces[key][:, some] for key in ("f_mel", "f_blood", "shading")}
         truth = torch.stack([part["f_mel"].mean(1), part["f_blood"].mean(1)], 1)
-        seen = colours(part, decoder, measured)
-        told = torch.cat([seen, lot["white_balance"]], 1)
-        found |= {name: score(truth, seen), f"{name}_told": score(truth, told)}
+        seen = render_colours(part, decoder, measured)
+        with_balance = torch.cat([seen, faces["white_balance"]], 1)
+        found |= {
+            name: score_reader(truth, seen),
+            f"{name}_told": score_reader(truth, with_balance),
+        }
     return found
 
 
-def draw(count: int) -> Lot:
-    """Lots of a face: pigments and shading [count, 7] of its base and regions, light and camera."""
+def sample_faces(count: int) -> Faces:
+    """Sample faces: pigments and shading [count, 7] of base and regions, light and camera."""
     rng = np.random.default_rng(0)
-    lots = [draw_light(rng) | draw_camera(rng, 1) | draw_regions(rng) for _ in range(count)]
+    samples = [draw_light(rng) | draw_camera(rng, 1) | draw_regions(rng) for _ in range(count)]
     names = ("light", "temperature", "pick", "white_balance", "tone")
-    lot = default_collate([{name: np.float32(one[name]) for name in names} for one in lots])
+    faces = default_collate([{name: np.float32(one[name]) for name in names} for one in samples])
     for name, limits, regions in (
         ("f_mel", MELANIN, "melanin_regions"),
         ("f_blood", HEMOGLOBIN, "blood_regions"),
     ):
         base = rng.uniform(*np.log(limits), (count, 1))
-        factors = np.stack([one[regions] for one in lots])
-        lot[name] = torch.from_numpy(np.exp(np.hstack([base, base + factors]))).float()
-    lot["shading"] = torch.from_numpy(np.exp(rng.normal(-0.4, 0.5, (count, 7)))).float()
-    lot["gloss"] = torch.from_numpy(np.exp(rng.normal(np.log(GLOSS[0]), GLOSS[1], count))).float()
-    return lot
+        factors = np.stack([one[regions] for one in samples])
+        faces[name] = torch.from_numpy(np.exp(np.hstack([base, base + factors]))).float()
+    faces["shading"] = torch.from_numpy(np.exp(rng.normal(-0.4, 0.5, (count, 7)))).float()
+    faces["specular"] = torch.from_numpy(
+        np.exp(rng.normal(np.log(SPECULAR[0]), SPECULAR[1], count))
+    ).float()
+    return faces
 
 
-def _even(lot: Lot) -> Lot:
-    return lot | {"tone": torch.zeros_like(lot["tone"])}
+def _remove_tone_curve(faces: Faces) -> Faces:
+    return faces | {"tone": torch.zeros_like(faces["tone"])}
 
 
-def _daylight(lot: Lot) -> Lot:
-    light = torch.zeros_like(lot["light"])
+def _use_daylight(faces: Faces) -> Faces:
+    light = torch.zeros_like(faces["light"])
     light[:, 0] = 1
-    return lot | {"light": light, "temperature": torch.full_like(lot["temperature"], 6504.0)}
+    return faces | {"light": light, "temperature": torch.full_like(faces["temperature"], 6504.0)}
 
 
-def colours(lot: Lot, decoder: SkinDecoder, measured: bool) -> Tensor:
-    """Log sRGB [count, 3 patches] in eight bits, by measured cameras or the mean."""
-    matrix = measured_matrix(lot, decoder.camera) if measured else mean_matrix(lot, decoder.camera)
-    skin = decoder.albedo(lot["f_mel"][:, None], lot["f_blood"][:, None], matrix)[:, :, 0]
-    linear = (skin + lot["gloss"][:, None, None]) * lot["shading"][:, None]
-    display = (toned(lot, linear[:, :, None].clamp_min(0)) * 255).round() / 255
+def render_colours(faces: Faces, decoder: SkinDecoder, measured: bool) -> Tensor:
+    """Render log sRGB [count, 3 patches] in eight bits, by measured cameras or the mean."""
+    matrix = (
+        get_measured_matrix(faces, decoder.camera)
+        if measured
+        else get_mean_matrix(faces, decoder.camera)
+    )
+    skin = decoder.albedo(faces["f_mel"][:, None], faces["f_blood"][:, None], matrix)[:, :, 0]
+    linear = (skin + faces["specular"][:, None, None]) * faces["shading"][:, None]
+    display = (toned(faces, linear[:, :, None].clamp_min(0)) * 255).round() / 255
     return torch.log(display.clamp_min(0.5 / 255)).flatten(1)
 
 
-def measured_matrix(lot: Lot, camera: SpectralCamera) -> Tensor:
-    """From spectra to linear sRGB [count, 33, 3], the scored ones by the test's cameras."""
+def get_measured_matrix(faces: Faces, camera: SpectralCamera) -> Tensor:
+    """Compute spectrum-to-sRGB matrices [count, 33, 3]; those scored are of test cameras."""
     parts = {"train": slice(None, -SCORED), "test": slice(-SCORED, None)}
     return torch.cat(
         [
-            pictured({name: value[part] for name, value in lot.items()}, camera, split)[0]
+            pictured({name: value[part] for name, value in faces.items()}, camera, split)[0]
             for split, part in parts.items()
         ]
     )
 
 
-def mean_matrix(lot: Lot, camera: SpectralCamera) -> Tensor:
-    """From spectra to linear sRGB [count, 33, 3] by the mean of all cameras."""
-    mean = torch.zeros(len(lot["light"]), len(camera.basis))
-    return camera.matrix(Capture(lot["light"], lot["temperature"], mean, lot["white_balance"]))
+def get_mean_matrix(faces: Faces, camera: SpectralCamera) -> Tensor:
+    """Compute spectrum-to-sRGB matrices [count, 33, 3] of the mean camera."""
+    mean = torch.zeros(len(faces["light"]), len(camera.basis))
+    return camera.matrix(
+        Capture(faces["light"], faces["temperature"], mean, faces["white_balance"])
+    )
 
 
-def score(truth: Tensor, seen: Tensor) -> dict[str, float]:
-    """How well a network gives both pigments [count, 2] from what is seen."""
-    guess = fitted(_standard(seen), _standard(truth.log())) * truth.log().std(0)
+def score_reader(truth: Tensor, seen: Tensor) -> dict[str, float]:
+    """Score a network that predicts both pigments [count, 2] from colours."""
+    guess = fit_network(_standardise(seen), _standardise(truth.log())) * truth.log().std(0)
     guess = (guess + truth.log().mean(0)).exp()[-SCORED:]
     truth = truth[-SCORED:]
     found = {}
@@ -134,8 +146,8 @@ def score(truth: Tensor, seen: Tensor) -> dict[str, float]:
     return found
 
 
-def fitted(seen: Tensor, wanted: Tensor) -> Tensor:
-    """What a network says of all, trained on all but the scored."""
+def fit_network(seen: Tensor, target: Tensor) -> Tensor:
+    """Train a network on all but the scored samples, and return its predictions for all."""
     network = nn.Sequential(
         *(nn.Linear(seen.shape[1], 64), nn.SiLU(), nn.Linear(64, 64), nn.SiLU(), nn.Linear(64, 2))
     )
@@ -144,15 +156,15 @@ def fitted(seen: Tensor, wanted: Tensor) -> Tensor:
     for _ in range(STEPS):
         some = torch.randint(len(seen) - SCORED, (BATCH,))
         optimizer.zero_grad()
-        ((network(seen[some]) - wanted[some]) ** 2).mean().backward()
+        ((network(seen[some]) - target[some]) ** 2).mean().backward()
         optimizer.step()
         schedule.step()
     with torch.no_grad():
-        said: Tensor = network(seen)
-    return said
+        predictions: Tensor = network(seen)
+    return predictions
 
 
-def _standard(values: Tensor) -> Tensor:
+def _standardise(values: Tensor) -> Tensor:
     return (values - values.mean(0)) / values.std(0)
 
 

@@ -1,16 +1,16 @@
-"""The reader of colours knows more where less is unknown."""
+"""Readers of colours are better where less is unknown."""
 
 import pytest
 import torch
 
 from benchmarks import identifiability
-from benchmarks.identifiability import colours, draw, read, score
+from benchmarks.identifiability import render_colours, sample_faces, score_reader, score_readers
 from skinnet.physics import SkinDecoder
 
 
 @pytest.fixture(autouse=True)
 def few(monkeypatch: pytest.MonkeyPatch) -> None:
-    sizes = {"DRAWN": 1500, "SCORED": 300, "STEPS": 150, "BATCH": 512}
+    sizes = {"SAMPLES": 1500, "SCORED": 300, "STEPS": 150, "BATCH": 512}
     for name, count in sizes.items():
         monkeypatch.setattr(identifiability, name, count)
 
@@ -18,23 +18,23 @@ def few(monkeypatch: pytest.MonkeyPatch) -> None:
 def test_what_is_seen_is_seen() -> None:
     torch.manual_seed(0)
     truth = torch.rand(1500, 2).exp()
-    found = score(truth, truth.log())
+    found = score_reader(truth, truth.log())
     assert min(found["melanin_r"], found["hemoglobin_r"]) > 0.99
-    found = score(truth, torch.rand(1500, 2))
+    found = score_reader(truth, torch.rand(1500, 2))
     assert max(found["melanin_r"], found["hemoglobin_r"]) < 0.3
 
 
 def test_a_face_told_its_white_balance_tells_most() -> None:
     torch.manual_seed(0)
-    found = read(draw(1500), SkinDecoder(), measured=False)
+    found = score_readers(sample_faces(1500), SkinDecoder(), measured=False)
     assert list(found) == ["patch", "patch_told", "face", "face_told"]
     told, untold = found["face_told"]["hemoglobin_r"], found["patch"]["hemoglobin_r"]
     assert told > untold + 0.05 and found["face"]["melanin_r"] > 0.9
 
 
 def test_colours_are_those_of_a_display() -> None:
-    lot = draw(400)
-    seen = colours(lot, SkinDecoder(), measured=True)
+    faces = sample_faces(400)
+    seen = render_colours(faces, SkinDecoder(), measured=True)
     assert seen.shape == (400, 21) and seen.max() <= 0
     levels = seen.exp()[seen > seen.min()] * 255
     torch.testing.assert_close(levels, levels.round(), atol=1e-3, rtol=0)
