@@ -41,7 +41,7 @@ from skinnet._version import __version__
 from skinnet.errors import InputError
 from skinnet.network import SkinAutoencoder
 from skinnet.physics import SkinDecoder
-from train.synthetic.faces import Lots, SyntheticFaces
+from train.synthetic.faces import SyntheticFaces, SyntheticScenes
 
 SHARED = Path(__file__).parents[2] / "shared" / "data"
 WEIGHTS = {"stage1": Path(__file__).parent / "stage1.safetensors", "stage2": None}
@@ -82,9 +82,11 @@ def average_training_set(settings: TestSet, decoder: SkinDecoder) -> dict[str, T
     """Average the first scenes of training, on the heads of the validation set."""
     data = _make_faces(settings, settings.train_size, val=settings.train_heads)
     data.setup("validate")
-    lots = Lots(data.buffers["val"], "train", settings.train_samples, settings.seed)
-    batches = DataLoader(lots, settings.batch_size)
-    return average_skin(collect_pictures(data.render(scenes, "train"), decoder) for scenes in batches)
+    dataset = SyntheticScenes(data.buffers["val"], "train", settings.train_samples, settings.seed)
+    batches = DataLoader(dataset, settings.batch_size)
+    return average_skin(
+        collect_pictures(data.render(scenes, "train"), decoder) for scenes in batches
+    )
 
 
 def _make_faces(settings: TestSet, size: int, test: int = 1, val: int = 1) -> SyntheticFaces:

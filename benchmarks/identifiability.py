@@ -7,12 +7,13 @@ faces, a shading of unknown strength, specular reflection, and eight bits. A net
 is trained on 60,000 such faces to predict the mean pigments, and scored on 10,000 others under the
 cameras of the test split. This is about the best that a reader of colours alone can reach. `patch`
 sees the base of a skin. `face` sees its forehead, cheeks, nose, lids, lips and chin, each in a
-shading of its own. The rows `told` are also given the exact error of the white balance, which the rest of a
-picture can only estimate. The unknowns are removed step by step. RMSE is relative to that of the
-mean.
+shading of its own. The rows `told` are also given the exact error of the white balance, which the
+rest of a picture can only estimate. The unknowns are removed step by step. RMSE is relative to that
+of the mean.
 """
 
 from collections.abc import Callable
+from typing import NamedTuple
 
 import numpy as np
 import torch
@@ -21,20 +22,27 @@ from torch.utils.data import default_collate
 
 from benchmarks.report import Results, main
 from skinnet.physics import Capture, SkinDecoder, SpectralCamera
-from train.synthetic.scene_sampling import (
-    HEMOGLOBIN,
-    MELANIN,
-    draw_camera,
-    draw_light,
-    draw_regions,
-)
-from train.synthetic.simulated_camera import pictured, toned
+from train.synthetic.face_sampling import HEMOGLOBIN_RANGE, MELANIN_RANGE, sample_regions
+from train.synthetic.scene import CameraParameters, LightParameters, map_tensors
+from train.synthetic.scene_sampling import sample_camera, sample_light
+from train.synthetic.simulated_camera import apply_tone_curve, simulate_sensor
 
 SAMPLES, SCORED, STEPS, BATCH = 70_000, 10_000, 1500, 4096
 SPECULAR = 0.032, 0.38
 """Median specular reflection of synthetic faces, and the standard deviation of its logarithm."""
 
-Faces = dict[str, Tensor]
+
+class Faces(NamedTuple):
+    """Pigments and shading [count, patches], specular reflection [count], light and camera."""
+
+    f_mel: Tensor
+    f_blood: Tensor
+    shading: Tensor
+    specular: Tensor
+    light: LightParameters
+    camera: CameraParameters
+
+
 Change = Callable[[Faces], Faces]
 
 
@@ -59,10 +67,14 @@ def score_readers(faces: Faces, decoder: SkinDecoder, measured: bool) -> Results
     """Score readers of a patch and of a face, with and without the white balance."""
     found: Results = {}
     for name, some in {"patch": slice(0, 1), "face": slice(1, None)}.items():
-        part = faces | {key: faces[key][:, some] for key in ("f_mel", "f_blood", "shading")}
-        truth = torch.stack([part["f_mel"].mean(1), part["f_blood"].mean(1)], 1)
+        part = faces._replace(
+            f_mel=faces.f_mel[:, some],
+            f_blood=faces.f_blood[:, some],
+            shading=faces.shading[:, some],
+        )
+        truth = torch.stack([part.f_mel.mean(1), part.f_blood.mean(1)], 1)
         seen = render_colours(part, decoder, measured)
-        with_balance = torch.cat([seen, faces["white_balance"]], 1)
+        with_balance = torch.cat([seen, faces.camera.white_balance], 1)
         found |= {
             name: score_reader(truth, seen),
             f"{name}_told": score_reader(truth, with_balance),
@@ -73,31 +85,31 @@ def score_readers(faces: Faces, decoder: SkinDecoder, measured: bool) -> Results
 def sample_faces(count: int) -> Faces:
     """Sample faces: pigments and shading [count, 7] of base and regions, light and camera."""
     rng = np.random.default_rng(0)
-    samples = [draw_light(rng) | draw_camera(rng, 1) | draw_regions(rng) for _ in range(count)]
-    names = ("light", "temperature", "pick", "white_balance", "tone")
-    faces = default_collate([{name: np.float32(one[name]) for name in names} for one in samples])
-    for name, limits, regions in (
-        ("f_mel", MELANIN, "melanin_regions"),
-        ("f_blood", HEMOGLOBIN, "blood_regions"),
-    ):
+    samples = [
+        (sample_light(rng), sample_camera(rng, 1), sample_regions(rng)) for _ in range(count)
+    ]
+    light, camera = default_collate([sample[:2] for sample in samples])
+    pigments = []
+    for number, limits in enumerate((MELANIN_RANGE, HEMOGLOBIN_RANGE)):
         base = rng.uniform(*np.log(limits), (count, 1))
-        factors = np.stack([one[regions] for one in samples])
-        faces[name] = torch.from_numpy(np.exp(np.hstack([base, base + factors]))).float()
-    faces["shading"] = torch.from_numpy(np.exp(rng.normal(-0.4, 0.5, (count, 7)))).float()
-    faces["specular"] = torch.from_numpy(
-        np.exp(rng.normal(np.log(SPECULAR[0]), SPECULAR[1], count))
-    ).float()
-    return faces
+        factors = np.stack([regions[number] for _, _, regions in samples])
+        pigments.append(torch.from_numpy(np.exp(np.hstack([base, base + factors]))).float())
+    shading = torch.from_numpy(np.exp(rng.normal(-0.4, 0.5, (count, 7)))).float()
+    specular = np.exp(rng.normal(np.log(SPECULAR[0]), SPECULAR[1], count))
+    return Faces(*pigments, shading, torch.from_numpy(specular).float(), light, camera)
 
 
 def _remove_tone_curve(faces: Faces) -> Faces:
-    return faces | {"tone": torch.zeros_like(faces["tone"])}
+    camera = faces.camera
+    return faces._replace(camera=camera._replace(tone=torch.zeros_like(camera.tone)))
 
 
 def _use_daylight(faces: Faces) -> Faces:
-    light = torch.zeros_like(faces["light"])
-    light[:, 0] = 1
-    return faces | {"light": light, "temperature": torch.full_like(faces["temperature"], 6504.0)}
+    light = faces.light
+    mixture = torch.zeros_like(light.mixture)
+    mixture[:, 0] = 1
+    temperature = torch.full_like(light.temperature, 6504.0)
+    return faces._replace(light=light._replace(mixture=mixture, temperature=temperature))
 
 
 def render_colours(faces: Faces, decoder: SkinDecoder, measured: bool) -> Tensor:
@@ -107,29 +119,31 @@ def render_colours(faces: Faces, decoder: SkinDecoder, measured: bool) -> Tensor
         if measured
         else get_mean_matrix(faces, decoder.camera)
     )
-    skin = decoder.albedo(faces["f_mel"][:, None], faces["f_blood"][:, None], matrix)[:, :, 0]
-    linear = (skin + faces["specular"][:, None, None]) * faces["shading"][:, None]
-    display = (toned(faces, linear[:, :, None].clamp_min(0)) * 255).round() / 255
+    skin = decoder.albedo(faces.f_mel[:, None], faces.f_blood[:, None], matrix)[:, :, 0]
+    linear = (skin + faces.specular[:, None, None]) * faces.shading[:, None]
+    display = apply_tone_curve(faces.camera.tone, linear[:, :, None].clamp_min(0))
+    display = (display * 255).round() / 255
     return torch.log(display.clamp_min(0.5 / 255)).flatten(1)
 
 
 def get_measured_matrix(faces: Faces, camera: SpectralCamera) -> Tensor:
     """Compute spectrum-to-sRGB matrices [count, 33, 3]; those scored are of test cameras."""
-    parts = {"train": slice(None, -SCORED), "test": slice(-SCORED, None)}
-    return torch.cat(
-        [
-            pictured({name: value[part] for name, value in faces.items()}, camera, split)[0]
-            for split, part in parts.items()
-        ]
-    )
+    matrices = []
+    for split, part in {"train": slice(None, -SCORED), "test": slice(-SCORED, None)}.items():
+        light, sensor = (
+            map_tensors(lambda value, part=part: value[part], record)
+            for record in (faces.light, faces.camera)
+        )
+        matrices.append(simulate_sensor(light, sensor, camera, split)[0])
+    return torch.cat(matrices)
 
 
 def get_mean_matrix(faces: Faces, camera: SpectralCamera) -> Tensor:
     """Compute spectrum-to-sRGB matrices [count, 33, 3] of the mean camera."""
-    mean = torch.zeros(len(faces["light"]), len(camera.basis))
-    return camera.matrix(
-        Capture(faces["light"], faces["temperature"], mean, faces["white_balance"])
-    )
+    light = faces.light
+    mean = torch.zeros(len(light.mixture), len(camera.basis))
+    balance = faces.camera.white_balance
+    return camera.matrix(Capture(light.mixture, light.temperature, mean, balance))
 
 
 def score_reader(truth: Tensor, seen: Tensor) -> dict[str, float]:

@@ -28,8 +28,10 @@ from skinnet.physics import (
     SkinReflectance,
     load_spectrum_to_srgb,
 )
-from train.synthetic.face_painting import Paint, paint_skin
-from train.synthetic.scene_sampling import draw_lot
+from train.synthetic.face_painting import FaceCharts, paint_face
+from train.synthetic.head_cast import make_blank_cast
+from train.synthetic.scene import map_tensors
+from train.synthetic.scene_sampling import sample_scene
 
 SIZE, NODES, ROUNDS, REPEATS = 1024, 256, 2, 3
 WORKERS = 2
@@ -49,10 +51,11 @@ SAMPLE = 2000
 def face(lookup: SkinLookup, matrix: Tensor, size: int) -> tuple[Tensor, Tensor]:
     """Linear RGB [size, size, 3] of a face, and of the skin under its brows, lashes and beard."""
     rng = np.random.default_rng(SEED)
-    lot = {name: torch.from_numpy(value)[None] for name, value in draw_lot(rng, 8).items()}
+    scene = sample_scene(rng, make_blank_cast(8).to_buffers())
+    charts = paint_face(map_tensors(lambda value: value[None], scene.face))
     rows, columns = (round(size / (part.stop - part.start)) for part in FACE)
     whole = (rows, columns)
-    textures = Paint(*(F.interpolate(part, whole, mode="bilinear") for part in paint_skin(lot)))
+    textures = FaceCharts(*(F.interpolate(part, whole, mode="bilinear") for part in charts))
     inside = [
         slice(round(p.start * n), round(p.start * n) + size)
         for p, n in zip(FACE, (rows, columns), strict=True)

@@ -24,44 +24,55 @@ from skinnet.images import linear_to_srgb, to_uint8
 from skinnet.mesh import Mesh, write_mesh
 from skinnet.physics import load_spectrum_to_srgb
 from skinnet.shape import load_shape_model, write_landmarks
-from train.synthetic.face_painting import Paint, paint_skin
-from train.synthetic.scene_sampling import draw_lot
+from train.synthetic.face_painting import FaceCharts, paint_face
+from train.synthetic.head_cast import make_blank_cast
+from train.synthetic.scene import FaceParameters, map_tensors
+from train.synthetic.scene_sampling import sample_scene
 
 LIGHT, CAMERA = "LED-B3", "Nikon D200"
 FILTER = np.array([[0.80, 0.05, 0.01], [0.03, 0.86, 0.04], [0.01, 0.06, 0.92]])
 """What the polariser does to the model's colours; unknown to the commands."""
 
-BARE = {"beard": 0.0, "stubble": 0.0, "make_up": 0.0, "brow": 0.3}
 PIGMENTS = ("f_mel", "f_blood")
 
 
 def person(number: int, people: int, texels: int) -> dict[str, np.ndarray]:
     """Pigments and what is not skin over the chart, [texels, texels]."""
-    draw = np.random.default_rng([25, number])
-    lot = draw_lot(draw, 8)
+    rng = np.random.default_rng([25, number])
+    scene = sample_scene(rng, make_blank_cast(8).to_buffers())
     # Melanin evenly over its range, in an order that is not that of the numbers.
-    lot["f_mel"] = np.asarray(
-        0.012 * 16 ** ((7 * number % people + draw.random()) / people), np.float32
-    )
-    lot |= {name: np.asarray(value, np.float32) for name, value in BARE.items()}
-    batch = {name: torch.from_numpy(value)[None] for name, value in lot.items()}
+    f_mel = 0.012 * 16 ** ((7 * number % people + rng.random()) / people)
+    face = map_tensors(lambda value: value[None], _bare(scene.face, f_mel))
     size = (texels, texels)
-    painted = Paint(*(F.interpolate(part, size, mode="bilinear") for part in paint_skin(batch)))
-    pores = torch.from_numpy(draw.normal(size=(2, 1, texels // 4, texels // 4)).astype(np.float32))
+    charts = paint_face(face)
+    painted = FaceCharts(*(F.interpolate(part, size, mode="bilinear") for part in charts))
+    pores = torch.from_numpy(rng.normal(size=(2, 1, texels // 4, texels // 4)).astype(np.float32))
     pores = F.interpolate(pores, size, mode="bicubic")[:, 0].mul(0.04).exp()
     return {
         "f_mel": (painted.melanin[0, 0] * pores[0]).clamp(1e-4, 0.42).numpy(),
         "f_blood": (painted.hemoglobin[0, 0] * pores[1]).clamp(1e-4, 0.14).numpy(),
-        "paint": painted.paint[0].numpy(),
+        "paint": painted.cover_colour[0].numpy(),
         "cover": painted.cover[0, 0].numpy(),
-        "draw": draw.normal(size=64),
+        "variates": rng.normal(size=64),
     }
+
+
+def _bare(face: FaceParameters, f_mel: float) -> FaceParameters:
+    """A face of that melanin without beard and make-up, with thin brows."""
+    melanin = face.skin.melanin._replace(fraction=torch.tensor(f_mel))
+    zero = torch.tensor(0.0)
+    beard = face.hair.beard._replace(beard=zero, stubble=zero)
+    return face._replace(
+        skin=face.skin._replace(melanin=melanin),
+        hair=face.hair._replace(brow=torch.tensor(0.3), beard=beard),
+        features=face.features._replace(make_up=zero),
+    )
 
 
 def write_person(path: Path, truth: dict[str, np.ndarray], colour: SkinColour) -> None:
     """A scan of that person as OBJ with PNG and landmarks, and the true maps as .npz."""
     model = load_shape_model()
-    alpha = truth["draw"][: len(model.variances)] * np.sqrt(model.variances)
+    alpha = truth["variates"][: len(model.variances)] * np.sqrt(model.variances)
     mesh = model.build_mesh(alpha)
     flat = [torch.from_numpy(truth[name]).flatten()[None] for name in PIGMENTS]
     skin = colour.skin(*flat)[0].reshape(3, *truth["f_mel"].shape).numpy()

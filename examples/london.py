@@ -6,8 +6,8 @@ soft, even light of that studio stands in for a lightstage: shading and gloss th
 as pigment here. Portraits are warped to their mean landmarks, brightened by one common factor,
 inverted under D65 and the mean camera, and compared as in Figure 8. The full calibration refuses
 these pictures: with a tone curve and shading in them, no linear transform brings skin near. With
-`--skins 200` so many skins are drawn from the hybrid model for heads of the photometric twin, as
-skins.npz. The pictures show real people and stay out of the project.
+`--skins 200` so many skins are sampled from the hybrid model for synthetic faces, as skins.npz. The
+pictures show real people and stay out of the project.
 """
 
 import argparse
@@ -28,9 +28,9 @@ from skinnet.pipeline.calibrate import ColourSettings
 from skinnet.pipeline.texture_inversion import invert_texture
 from skinnet.shape import compute_chart_angles
 from skinnet.texture import TextureSpace, WarpedTexture, warp_texture
-from train.synthetic.model_skins import save_skins
-from train.synthetic.scene_sampling import CHART
-from train.synthetic.skins import Place, draw_skins
+from train.synthetic.model_skins import save_model_skins
+from train.synthetic.scene import CHART_SIZE
+from train.synthetic.skins import ChartPlaces, sample_model_skins
 
 SIZE = 512
 MARGIN = 0.02
@@ -57,8 +57,8 @@ PLACES = (
     ((109, 112), (0.98, -0.04)), ((110, 113), (0.98, -0.42)), ((111, 114), (0.95, -0.62)),
     ((126, 132), (0.95, -0.84)), ((136, 142), (0.72, 0.62)), ((139, 139), (0.0, 0.78)),
 )  # fmt: skip
-"""Landmarks on both sides of the face, and their azimuth and elevation on the twin's chart, where
-they are told apart by the direction seen from the middle of a head."""
+"""Landmarks on both sides of the face, and their azimuth and elevation on the synthetic
+faces' chart, which describes a place by its direction from the middle of a head."""
 
 FRONTAL = 1.15
 """Azimuth in radians beyond which a portrait from ahead shows nothing."""
@@ -113,8 +113,8 @@ def textures(folder: Path) -> tuple[list[Path], list[np.ndarray], np.ndarray]:
     return files, images, mask
 
 
-def chart_place(mean: np.ndarray) -> Place:
-    """Texture coordinates in the frame of mean landmarks for each texel of the twin's chart.
+def find_places(mean: np.ndarray) -> ChartPlaces:
+    """Find the texture coordinates of each texel of the chart in the frame of mean landmarks.
 
     A thin-plate spline starts from directions seen from ahead, as the frame is, so that it has
     little to bend.
@@ -125,9 +125,9 @@ def chart_place(mean: np.ndarray) -> Place:
     points = mean[np.concatenate([marks[:, 0], marks[:, 1]])]
     places, once = np.unique(places.round(9) + 0.0, axis=0, return_index=True)
     spline = RBFInterpolator(_ahead(places), points[once], smoothing=1e-4)
-    azimuth, elevation = (axis.double().numpy() for axis in compute_chart_angles(*CHART))
+    azimuth, elevation = (axis.double().numpy() for axis in compute_chart_angles(*CHART_SIZE))
     texels = np.stack(np.broadcast_arrays(azimuth, elevation), -1)
-    found = spline(_ahead(texels).reshape(-1, 2)).reshape(*CHART, 2)
+    found = spline(_ahead(texels).reshape(-1, 2)).reshape(*CHART_SIZE, 2)
     return np.where(np.abs(azimuth)[..., None] < FRONTAL, found, np.nan)
 
 
@@ -138,11 +138,12 @@ def _ahead(places: np.ndarray) -> np.ndarray:
 
 
 def write_skins(portraits: Path, output: Path, count: int) -> None:
-    """Draw skins for the twin from the hybrid model in that folder."""
+    """Sample skins for synthetic faces from the hybrid model in that folder."""
     mean = frame([landmarks(file) for file in sorted(portraits.glob("*.tem"))])
     model = HybridModel.load(output / "model" / "hybrid.npz")
-    save_skins(output / "skins.npz", draw_skins(model, chart_place(mean), count))
-    print(f"{output / 'skins.npz'}: {count} skins for heads of the twin")
+    skins = sample_model_skins(model, find_places(mean), count)
+    save_model_skins(output / "skins.npz", skins)
+    print(f"{output / 'skins.npz'}: {count} skins for synthetic faces")
 
 
 def main() -> None:
@@ -151,7 +152,7 @@ def main() -> None:
     parser.add_argument("portraits", type=Path)
     parser.add_argument("-o", "--output", type=Path, default=Path("runs/london"))
     parser.add_argument("--calibration", default="common", help="common, full, exposure or none")
-    parser.add_argument("--skins", type=int, default=0, help="skins to draw for the twin's heads")
+    parser.add_argument("--skins", type=int, default=0, help="skins to sample for synthetic faces")
     options = parser.parse_args()
     maps = options.output / "maps"
     maps.mkdir(parents=True, exist_ok=True)

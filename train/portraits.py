@@ -30,7 +30,8 @@ from skinnet.images import (
 from train.batch import Batch
 from train.guards import list_names
 from train.stream import StreamLoader, count_seen_samples
-from train.synthetic.faces import Drawn, SyntheticFaces
+from train.synthetic.faces import SyntheticFaces
+from train.synthetic.scene import SceneParameters
 
 SUFFIXES = (".jpg", ".jpeg", ".png", ".tif", ".tiff", ".webp")
 Share = restricted_number_type("Share", float, [(">=", 0), ("<", 1)])
@@ -185,7 +186,7 @@ class Portraits(LightningDataModule):
         """Make the loader of the photographs kept for validation, beside synthetic test faces."""
         return self._combine(self.synthetic.test_dataloader())
 
-    def _combine(self, synthetic: DataLoader[Drawn]) -> CombinedLoader:
+    def _combine(self, synthetic: DataLoader[SceneParameters]) -> CombinedLoader:
         """Validation photographs as they are, beside synthetic faces; the shorter set repeats."""
         portraits: DataLoader[Crop] = DataLoader(self.crops["val"], self.batch_size)  # type: ignore[arg-type]
         return CombinedLoader({"portraits": portraits, "synthetic": synthetic}, "max_size_cycle")

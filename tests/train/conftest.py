@@ -15,7 +15,7 @@ from skinnet.mesh.mesh_file import write_mesh
 from skinnet.shape import load_shape_model
 from train.batch import Batch
 from train.cli import main
-from train.synthetic.faces import Lots, SyntheticFaces
+from train.synthetic.faces import SyntheticFaces, SyntheticScenes
 
 Fit = Callable[..., int]
 
@@ -62,8 +62,8 @@ def batch(casts: Path) -> Callable[[int], Batch]:
     """Makes a batch of that many pictures, 32 pixels wide, of one head."""
     data = SyntheticFaces(size=32, heads=1, val_heads=1, geometry=str(casts))
     data.setup("fit")
-    lots = Lots(data.buffers["train"], "train", 100, seed=0)
-    return lambda count: data.render(default_collate([lots[i] for i in range(count)]), "train")
+    scenes = SyntheticScenes(data.buffers["train"], "train", 100, seed=0)
+    return lambda count: data.render(default_collate([scenes[i] for i in range(count)]), "train")
 
 
 @pytest.fixture

@@ -14,7 +14,9 @@ from skinnet.appearance.skin_texture import SkinTexture
 from skinnet.appearance.stack_writer import write_stack
 from skinnet.errors import InputError
 from skinnet.physics import to_display
-from train.fitted import FittedFaces, FittedLots, shrunk
+from train.batch import Batch
+from train.fitted import FittedFaces, FittedScenes
+from train.fitted_scenes import average_texels
 
 
 @pytest.fixture(scope="module")
@@ -24,9 +26,9 @@ def data(faces: Path) -> FittedFaces:
     return made
 
 
-def batch(data: FittedFaces, split: str = "train"):
-    lots = FittedLots(data, split, 4)
-    return data.on_after_batch_transfer(default_collate([lots[i] for i in range(4)]), 0)
+def batch(data: FittedFaces, split: str = "train") -> Batch:
+    scenes = FittedScenes(data, split, 4)
+    return data.on_after_batch_transfer(default_collate([scenes[i] for i in range(4)]), 0)
 
 
 def test_the_truth_explains_the_picture(data: FittedFaces) -> None:
@@ -55,20 +57,20 @@ def test_pictures_are_the_same_twice_and_differ_between_splits(data: FittedFaces
 def test_the_texture_lies_the_right_way_up(data: FittedFaces) -> None:
     # The face looks ahead in the first view: its left, u > 1/2, is on the picture's right.
     first = data.views[0]
-    u, v = np.moveaxis(first.uv, -1, 0)
-    hit = first.hit > 0
+    u, v = np.moveaxis(first.uv.numpy(), -1, 0)
+    hit = first.hit.numpy() > 0
     columns, rows = np.meshgrid(np.arange(48), np.arange(48))
     assert np.corrcoef(columns[hit], u[hit])[0, 1] > 0.9
     assert np.corrcoef(rows[hit], v[hit])[0, 1] > 0.9
-    assert first.normal[hit][:, 2].mean() > 0.6
+    assert first.normal.numpy()[hit][:, 2].mean() > 0.6
 
 
-def test_shrinking_keeps_the_mean_of_what_is_known() -> None:
-    draw = np.random.default_rng(0)
-    maps = [draw.random((16, 16), np.float32) for _ in range(2)]
-    mask = draw.random((16, 16)) < 0.5
+def test_averaging_keeps_the_mean_of_what_is_known() -> None:
+    rng = np.random.default_rng(0)
+    maps = [rng.random((16, 16), np.float32) for _ in range(2)]
+    mask = rng.random((16, 16)) < 0.5
     whole = SkinTexture(*maps, np.zeros((16, 16, 3), np.float32), mask)
-    values, share = shrunk(whole, 8)
+    values, share = average_texels(whole, 8)
     blocks = mask.reshape(8, 2, 8, 2).sum((1, 3))
     np.testing.assert_allclose(share, blocks / 4, rtol=1e-6)
     summed = np.where(mask, maps[1], 0).reshape(8, 2, 8, 2).sum((1, 3))
@@ -76,7 +78,7 @@ def test_shrinking_keeps_the_mean_of_what_is_known() -> None:
                                rtol=1e-5)  # fmt: skip
 
 
-def test_half_of_the_faces_wear_a_drawn_skin(faces: Path, tmp_path: Path) -> None:
+def test_half_of_the_faces_wear_a_sampled_skin(faces: Path, tmp_path: Path) -> None:
     texture, colour = load_maps(faces / "a_maps.npz")
     zero = np.zeros((SIZE, SIZE, 3), np.float32)
     people = {
@@ -87,10 +89,10 @@ def test_half_of_the_faces_wear_a_drawn_skin(faces: Path, tmp_path: Path) -> Non
     HybridModel.fit(stack).save(tmp_path / "hybrid.npz")
     data = FittedFaces(str(faces), str(tmp_path / "hybrid.npz"), size=16, texels=8, shots=1)
     data.setup("fit")
-    scenes = FittedLots(data, "train", 40)
-    own = data.skins[0][0]
-    drawn = [not np.array_equal(scenes[i]["skin"], own) for i in range(40)]
-    assert 8 < sum(drawn) < 32
+    scenes = FittedScenes(data, "train", 40)
+    own = data.textures[0][0]
+    sampled = [not np.array_equal(scenes[i].texture, own) for i in range(40)]
+    assert 8 < sum(sampled) < 32
 
 
 def test_a_folder_without_faces_is_refused(tmp_path: Path) -> None:

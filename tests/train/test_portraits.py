@@ -3,6 +3,7 @@
 import csv
 from functools import partial
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
@@ -26,7 +27,9 @@ from train.portraits import (
     augment,
     find_crops,
 )
-from train.synthetic.faces import Drawn, SyntheticFaces
+from train.synthetic.faces import SyntheticFaces
+from train.synthetic.head_cast import make_blank_cast
+from train.synthetic.scene import HeadBuffers
 
 
 def test_a_face_is_found_cropped_and_masked(tmp_path: Path) -> None:
@@ -173,7 +176,7 @@ def test_sizes_that_differ_are_refused(tmp_path: Path) -> None:
 def test_validation_sees_all_its_photographs_however_few_synthetic_faces(tmp_path: Path) -> None:
     data = Portraits(str(tmp_path), size=16, batch_size=2)
     data.crops = {"val": [Crop(np.zeros((16, 16, 3), np.uint8), np.zeros((16, 16), np.uint8))] * 9}
-    synthetic: DataLoader[Drawn] = DataLoader([{"f_mel": np.zeros(1)}] * 2, 2)  # type: ignore[arg-type]
+    synthetic: DataLoader[Any] = DataLoader([{"f_mel": np.zeros(1)}] * 2, 2)  # type: ignore[arg-type]
     sizes = [len(batch["portraits"].photograph) for batch, *_ in data._combine(synthetic)]
     assert sum(sizes) == 9
 
@@ -184,7 +187,8 @@ def test_photographs_kept_for_validation_are_left_as_they_are(tmp_path: Path) ->
     rng = np.random.default_rng(0)
     pictures = rng.integers(0, 255, (4, 16, 16, 3), np.uint8)
     data.crops = {"val": [Crop(each, each[..., 0]) for each in pictures]}
-    data.synthetic.buffers = {"val": {"label": np.zeros((1, 16, 16), np.uint8)}}
+    blank = make_blank_cast(16).to_buffers()
+    data.synthetic.buffers = {"val": HeadBuffers(*(one[None] for one in blank))}
     loader = data.val_dataloader().iterables["portraits"]
     shown = np.concatenate([batch.photograph for batch in loader])
     np.testing.assert_array_equal(shown, pictures)

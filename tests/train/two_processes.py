@@ -6,7 +6,7 @@ import torch
 from lightning import Callback, LightningModule, Trainer
 from torch import Tensor, distributed, nn
 
-from train.synthetic.faces import Lots
+from train.synthetic.faces import SyntheticScenes
 
 
 class _Sum(torch.autograd.Function):
@@ -45,7 +45,7 @@ class SharedBatchNorm(nn.BatchNorm2d):
 
 
 class Witness(Callback):
-    """Notes the training samples that each process draws, in `folder`/RANK.txt.
+    """Notes the training scenes that each process samples, in `folder`/RANK.txt.
 
     Args:
         folder: of the notes.
@@ -59,15 +59,15 @@ class Witness(Callback):
         for module in pl_module.modules():
             if type(module) is nn.BatchNorm2d:
                 module.__class__ = SharedBatchNorm
-        drawn, notes = Lots.__getitem__, self.folder / f"{trainer.global_rank}.txt"
+        sample, notes = SyntheticScenes.__getitem__, self.folder / f"{trainer.global_rank}.txt"
 
-        def noted(lots: Lots, index: int) -> object:
-            if lots.key[1] == 0:
+        def sample_and_note(scenes: SyntheticScenes, index: int) -> object:
+            if scenes.key[1] == 0:
                 with notes.open("a") as file:
                     file.write(f"{index}\n")
-            return drawn(lots, index)
+            return sample(scenes, index)
 
-        Lots.__getitem__ = noted  # type: ignore[method-assign]
+        SyntheticScenes.__getitem__ = sample_and_note  # type: ignore[method-assign]
 
     def on_train_batch_start(
         self, trainer: Trainer, pl_module: LightningModule, batch: object, batch_idx: int

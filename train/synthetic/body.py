@@ -5,82 +5,93 @@ from typing import NamedTuple
 import numpy as np
 from jaxtyping import Float
 
-from train.synthetic.labelled_mesh import Part, joined, part, sheet
+from train.synthetic.labelled_mesh import LabelledMesh, join, label_mesh, triangulate_grid
 from train.synthetic.labels import CLOTH, SKIN
 
-TURNS, STEPS = 97, 48
-BOTTOM = -3.6
+_AZIMUTHS, _STEPS = 97, 48
+_BOTTOM = -3.6
 
-Grid = Float[np.ndarray, "rows columns"]
+_Grid = Float[np.ndarray, "rows columns"]
 
 
 class Neck(NamedTuple):
-    """The neck's foot, about 1.3 half heads under the eyes: its middle and its half axes."""
+    """Foot of the neck, about 1.3 half heads under the eyes: its middle and its half axes."""
 
     x: float
     z: float
-    wide: float
-    deep: float
+    half_width: float
+    half_depth: float
 
 
-class Build(NamedTuple):
-    """How a torso is built: heights of its foot and fall of its shoulders, half axes."""
+class _Torso(NamedTuple):
+    """Height of the neck's foot, fall of the shoulders, half axes, and exponent of the outline."""
 
     foot: float
     fall: float
-    wide: float
-    deep: float
+    half_width: float
+    half_depth: float
     edge: float
 
 
-def bust(neck: Neck, draw: np.random.Generator) -> Part:
-    """A chest of skin on which clothes lie, open at the collar."""
-    build = Build(
-        draw.uniform(-1.32, -1.18),
-        draw.uniform(0.55, 0.9),
-        draw.uniform(1.3, 1.7),
-        draw.uniform(0.6, 0.75),
-        draw.uniform(1.9, 2.6),
+def make_bust(neck: Neck, rng: np.random.Generator) -> LabelledMesh:
+    """Make a chest with skin, and clothes on it that are open at the collar.
+
+    Args:
+        neck: where the neck ends.
+        rng: random numbers.
+
+    Returns:
+        Chest and clothes.
+    """
+    torso = _Torso(
+        rng.uniform(-1.32, -1.18),
+        rng.uniform(0.55, 0.9),
+        rng.uniform(1.3, 1.7),
+        rng.uniform(0.6, 0.75),
+        rng.uniform(1.9, 2.6),
     )
-    turn = np.linspace(-np.pi, np.pi, TURNS)
-    return joined([_chest(neck, build, turn), _clothes(neck, build, turn, draw)])
+    azimuth = np.linspace(-np.pi, np.pi, _AZIMUTHS)
+    return join([_make_chest(neck, torso, azimuth), _make_clothes(neck, torso, azimuth, rng)])
 
 
-def _chest(neck: Neck, build: Build, turn: Float[np.ndarray, "turns"]) -> Part:
-    along = np.linspace(0, 1.2, STEPS)[:, None] + 0 * turn
-    points = _torso(neck, build, along, turn + 0 * along)
-    down = build.foot - points[..., 1]
-    chart = np.stack([turn + 0 * along, -1.4 - 0.4 * down], -1)
-    return part(points.reshape(-1, 3), sheet(*along.shape), SKIN, chart.reshape(-1, 2))
+def _make_chest(neck: Neck, torso: _Torso, azimuth: Float[np.ndarray, "azimuths"]) -> LabelledMesh:
+    along = np.linspace(0, 1.2, _STEPS)[:, None] + 0 * azimuth
+    points = _place_on_torso(neck, torso, along, azimuth + 0 * along)
+    down = torso.foot - points[..., 1]
+    chart = np.stack([azimuth + 0 * along, -1.4 - 0.4 * down], -1)
+    return label_mesh(
+        points.reshape(-1, 3), triangulate_grid(*along.shape), SKIN, chart.reshape(-1, 2)
+    )
 
 
-def _clothes(
-    neck: Neck, build: Build, turn: Float[np.ndarray, "turns"], draw: np.random.Generator
-) -> Part:
-    wide, deep = draw.uniform(0.5, 1.1), draw.uniform(0.0, 0.55)
-    front = np.abs(turn) / wide
+def _make_clothes(
+    neck: Neck, torso: _Torso, azimuth: Float[np.ndarray, "azimuths"], rng: np.random.Generator
+) -> LabelledMesh:
+    width, depth = rng.uniform(0.5, 1.1), rng.uniform(0.0, 0.55)
+    front = np.abs(azimuth) / width
     pointed, round_ = (1 - front).clip(0), np.exp(-(front**2) * 1.5)
-    collar = draw.uniform(0.04, 0.2) + deep * (pointed if draw.random() < 0.5 else round_)
-    share = np.linspace(0, 1, STEPS)[:, None] ** 1.3
+    collar = rng.uniform(0.04, 0.2) + depth * (pointed if rng.random() < 0.5 else round_)
+    share = np.linspace(0, 1, _STEPS)[:, None] ** 1.3
     along = collar.clip(max=0.95) * (1 - share) + 2 * share
-    points = _torso(neck, build, along, turn + 0 * along, draw.uniform(0.02, 0.05))
+    points = _place_on_torso(neck, torso, along, azimuth + 0 * along, rng.uniform(0.02, 0.05))
     chart = points[..., :2].reshape(-1, 2)
-    return part(points.reshape(-1, 3), sheet(*along.shape), CLOTH, chart)
+    return label_mesh(points.reshape(-1, 3), triangulate_grid(*along.shape), CLOTH, chart)
 
 
-def _torso(
-    neck: Neck, build: Build, along: Grid, turn: Grid, off: float = 0.0
+def _place_on_torso(
+    neck: Neck, torso: _Torso, along: _Grid, azimuth: _Grid, off: float = 0.0
 ) -> Float[np.ndarray, "rows columns 3"]:
-    """Points from the neck (0) over the shoulders (1) down to the bottom (2), `off` the skin."""
+    """Points from the neck (0) over the shoulders (1) to the bottom (2), `off` outside the skin."""
     out = np.sin(along.clip(0, 1) * np.pi / 2)
-    x = 0.9 * neck.wide * (1 - out) + build.wide * out
-    z = 0.9 * neck.deep * (1 - out) + build.deep * out
+    x = 0.9 * neck.half_width * (1 - out) + torso.half_width * out
+    z = 0.9 * neck.half_depth * (1 - out) + torso.half_depth * out
     # A quarter of a superellipse ends upright, as arms and chest do; the neck rises from it.
-    round_ = 1 - (1 - out**build.edge).clip(0) ** (1 / build.edge)
-    y = build.foot + off + 0.3 * (1 - out) ** 4 - build.fall * (0.25 * out + 0.75 * round_)
+    round_ = 1 - (1 - out**torso.edge).clip(0) ** (1 / torso.edge)
+    y = torso.foot + off + 0.3 * (1 - out) ** 4 - torso.fall * (0.25 * out + 0.75 * round_)
     under = (along - 1).clip(0)
-    y = y * (1 - under) + BOTTOM * under
+    y = y * (1 - under) + _BOTTOM * under
     middle = neck.z - 0.1 * out
     return np.stack(
-        [neck.x * (1 - out) + (x + off) * np.sin(turn), y, middle + (z + off) * np.cos(turn)], -1
+        [neck.x * (1 - out) + (x + off) * np.sin(azimuth), y, middle + (z + off) * np.cos(azimuth)],
+        -1,
     )

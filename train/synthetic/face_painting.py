@@ -1,4 +1,4 @@
-"""Skin and what covers it, painted on the charts of a batch of heads."""
+"""Skin and what covers it, painted on the charts of a batch of faces."""
 
 from functools import cache
 from typing import NamedTuple
@@ -10,130 +10,140 @@ from torch import Tensor
 
 from skinnet.network.autoencoder import F_BLOOD_MAX, F_MEL_MAX
 from skinnet.shape import compute_chart_angles
-from train.synthetic.scene_sampling import CHART
-from train.synthetic.tensors import column, soft_step
+from train.synthetic.facial_hair import (
+    cover_with_beard,
+    cover_with_brows,
+    cover_with_lashes,
+    evaluate_bell,
+)
+from train.synthetic.scene import (
+    CHART_SIZE,
+    FaceParameters,
+    FeatureParameters,
+    HairParameters,
+    MarkParameters,
+    PigmentParameters,
+)
+from train.synthetic.tensors import expand_colour, expand_scalar, soft_step
 
-Chart = Float[Tensor, "batch channels rows columns"]
+_REGIONS = ((0.0, 0.50, 0.50, 0.20), (0.52, -0.28, 0.20, 0.15), (0.0, -0.30, 0.14, 0.14),
+            (0.34, 0.05, 0.16, 0.10), (0.0, -0.66, 0.17, 0.055),
+            (0.0, -1.0, 0.3, 0.15))  # fmt: skip
+"""Azimuth, elevation and widths of forehead, cheeks, nose, eyelids, lips and chin."""
 
-REGIONS = ((0.0, 0.50, 0.50, 0.20), (0.52, -0.28, 0.20, 0.15), (0.0, -0.30, 0.14, 0.14),
-           (0.34, 0.05, 0.16, 0.10), (0.0, -0.66, 0.17, 0.055), (0.0, -1.0, 0.3, 0.15))  # fmt: skip
-"""Azimuth, elevation and widths of forehead, cheeks, nose, lids, lips and chin."""
-
-OWN = 0.4
-"""Share of a lot's own regions and noise that is left under a skin of a hybrid model, which has
+_KEPT_STRUCTURE = 0.4
+"""Share of the sampled regions and noise that is kept under a skin of a hybrid model, which has
 such structure already."""
 
-
-class Paint(NamedTuple):
-    """Charts [batch, channels, rows, columns]: the pigments, the paint over them and its share,
-    oil, and the slopes of the skin's own relief."""
-
-    melanin: Tensor
-    hemoglobin: Tensor
-    paint: Tensor
-    cover: Tensor
-    oil: Tensor
-    bump: Tensor
+_Map = Float[Tensor, "batch 1 rows columns"]
 
 
-def paint_skin(lot: dict[str, Tensor]) -> Paint:
-    """The charts of a batch of lots."""
-    azimuth, elevation = (axis.to(lot["f_mel"].device) for axis in compute_chart_angles(*CHART))
-    regions = _regions(lot["f_mel"].device)
-    melanin, hemoglobin = _pigments(lot, regions)
-    paint, cover = torch.zeros_like(melanin).expand(-1, 3, -1, -1), torch.zeros_like(melanin)
-    for colour, mask in _layers(lot, azimuth, elevation, regions):
-        paint = paint * (1 - mask) + colour * mask
-        cover = cover + mask - cover * mask
+class FaceCharts(NamedTuple):
+    """A batch of painted faces on their charts.
+
+    `melanin` and `hemoglobin` are volume fractions. `cover_colour` is the linear sRGB of what
+    covers the skin, `cover` its opacity. `oil` is relative to the picture's. `bump` holds the
+    slopes of the skin's relief.
+    """
+
+    melanin: _Map
+    hemoglobin: _Map
+    cover_colour: Float[Tensor, "batch 3 rows columns"]
+    cover: _Map
+    oil: _Map
+    bump: Float[Tensor, "batch 2 rows columns"]
+
+
+def paint_face(face: FaceParameters) -> FaceCharts:
+    """Paint skin and what covers it.
+
+    Args:
+        face: parameters of a batch.
+
+    Returns:
+        Charts of `CHART_SIZE` rows and columns; the first row is the top.
+    """
+    skin, device = face.skin, face.skin.bump.device
+    azimuth, elevation = (axis.to(device) for axis in compute_chart_angles(*CHART_SIZE))
+    regions = _evaluate_regions(device)
+    melanin, hemoglobin = _spread_pigments(face, regions)
+    colour, cover = torch.zeros_like(melanin).expand(-1, 3, -1, -1), torch.zeros_like(melanin)
+    for layer, opacity in _list_layers(face.hair, face.features, azimuth, elevation, regions):
+        colour = colour * (1 - opacity) + layer * opacity
+        cover = cover + opacity - cover * opacity
     oil = (0.8 + 0.7 * regions[2] + 0.5 * regions[0])[None, None].expand_as(cover)
-    return Paint(melanin, hemoglobin, paint / cover.clamp_min(1e-3), cover, oil, lot["bump"])
+    return FaceCharts(melanin, hemoglobin, colour / cover.clamp_min(1e-3), cover, oil, skin.bump)
 
 
 @cache
-def _regions(device: torch.device) -> Float[Tensor, "regions rows columns"]:
-    azimuth, elevation = (axis.to(device) for axis in compute_chart_angles(*CHART))
-    return torch.stack([region(azimuth, elevation, *place) for place in REGIONS])
+def _evaluate_regions(device: torch.device) -> Float[Tensor, "regions rows columns"]:
+    azimuth, elevation = (axis.to(device) for axis in compute_chart_angles(*CHART_SIZE))
+    return torch.stack([evaluate_bell(azimuth, elevation, *place) for place in _REGIONS])
 
 
-def region(
-    azimuth: Tensor, elevation: Tensor, at: float, height: float, wide: float, tall: float
-) -> Tensor:
-    """A bell on both sides of the face, or on its middle."""
-    across = (azimuth.abs() - at if at else azimuth) / wide
-    return torch.exp(-(across**2 + ((elevation - height) / tall) ** 2) / 2)
-
-
-def _pigments(lot: dict[str, Tensor], regions: Tensor) -> tuple[Tensor, Tensor]:
-    logs = []
-    own = 1 - (1 - OWN) * column(lot["worn"])
-    for name in ("melanin", "blood"):
-        log = torch.einsum("br,rhw->bhw", lot[f"{name}_regions"], regions)[:, None]
-        for octave in ("coarse", "middle", "fine"):
-            log = log + enlarged(lot[f"{name}_{octave}"])
-        logs.append(own * log + lot[f"skin_{name}"])
-    # Lips hold what they hold: freckles and moles end there.
-    skin = 1 - regions[4]
-    marks = (enlarged(lot["freckles"]) + _moles(lot)) * skin
-    blood = (enlarged(lot["spots"]) + enlarged(lot["vessels"]) * (regions[1] + regions[2])) * skin
-    melanin = column(lot["f_mel"]) * (logs[0] + marks).exp()
-    hemoglobin = column(lot["f_blood"]) * (logs[1] + blood).exp()
+def _spread_pigments(
+    face: FaceParameters, regions: Float[Tensor, "regions rows columns"]
+) -> tuple[_Map, _Map]:
+    skin, marks = face.skin, face.marks
+    kept = 1 - (1 - _KEPT_STRUCTURE) * expand_scalar(skin.has_model_skin)
+    log_melanin, log_hemoglobin = (
+        kept * _sum_structure(pigment, regions) + pigment.model_skin
+        for pigment in (skin.melanin, skin.hemoglobin)
+    )
+    # Lips have neither freckles nor moles.
+    outside = 1 - regions[4]
+    dark = (resize_to_chart(marks.freckles) + _spread_moles(marks)) * outside
+    vessels = resize_to_chart(marks.vessels) * (regions[1] + regions[2])
+    red = (resize_to_chart(marks.spots) + vessels) * outside
+    melanin = expand_scalar(skin.melanin.fraction) * (log_melanin + dark).exp()
+    hemoglobin = expand_scalar(skin.hemoglobin.fraction) * (log_hemoglobin + red).exp()
     return melanin.clamp(1e-4, F_MEL_MAX), hemoglobin.clamp(1e-4, F_BLOOD_MAX)
 
 
-def enlarged(small: Chart) -> Chart:
-    """A lot's noise over the whole chart."""
-    return F.interpolate(small, CHART, mode="bilinear")
+def _sum_structure(
+    pigment: PigmentParameters, regions: Float[Tensor, "regions rows columns"]
+) -> _Map:
+    log = torch.einsum("br,rhw->bhw", pigment.regions, regions)[:, None]
+    for octave in (pigment.coarse, pigment.middle, pigment.fine):
+        log = log + resize_to_chart(octave)
+    return log
 
 
-def _moles(lot: dict[str, Tensor]) -> Tensor:
-    azimuth, elevation = (axis.to(lot["f_mel"].device) for axis in compute_chart_angles(*CHART))
-    at, height, radius, factor = (part[..., None, None] for part in lot["moles"].unbind(2))
-    across = torch.exp(-(((azimuth - at) / radius) ** 2) / 2)
+def resize_to_chart(
+    noise: Float[Tensor, "batch channels rows columns"],
+) -> Float[Tensor, "batch channels {CHART_SIZE[0]} {CHART_SIZE[1]}"]:
+    """Interpolate coarse noise over the whole chart."""
+    return F.interpolate(noise, CHART_SIZE, mode="bilinear")
+
+
+def _spread_moles(marks: MarkParameters) -> _Map:
+    azimuth, elevation = (axis.to(marks.moles.device) for axis in compute_chart_angles(*CHART_SIZE))
+    centre, height, radius, factor = (part[..., None, None] for part in marks.moles.unbind(2))
+    across = torch.exp(-(((azimuth - centre) / radius) ** 2) / 2)
     along = torch.exp(-(((elevation - height) / radius) ** 2) / 2)
     # Separable bells, so that six of them cost two thin products.
     return torch.matmul((factor * along)[..., 0].mT, across[:, :, 0])[:, None]
 
 
-def _layers(
-    lot: dict[str, Tensor], azimuth: Tensor, elevation: Tensor, regions: Tensor
+def _list_layers(
+    hair: HairParameters,
+    features: FeatureParameters,
+    azimuth: Tensor,
+    elevation: Tensor,
+    regions: Float[Tensor, "regions rows columns"],
 ) -> list[tuple[Tensor, Tensor]]:
+    """Colour and opacity of what lies on the skin, from the skin outwards."""
     side = azimuth.abs()
-    hair = lot["hair"][:, :, None, None] * enlarged(lot["strands"]).exp()
+    hair_colour = expand_colour(hair.colour) * resize_to_chart(hair.strands).exp()
     dark = torch.tensor([0.03, 0.010, 0.008], device=side.device)[None, :, None, None]
     mouth = torch.exp(-(((elevation + 0.66) / 0.010) ** 2)) * soft_step(0.20 - side, 0.04)
-    nostrils = region(azimuth, elevation, 0.075, -0.435, 0.028, 0.015)
-    lips = (1.6 * regions[4]).clamp_max(1) * column(lot["make_up"])
+    nostrils = evaluate_bell(azimuth, elevation, 0.075, -0.435, 0.028, 0.015)
+    lips = (1.6 * regions[4]).clamp_max(1) * expand_scalar(features.make_up)
     return [
-        (lot["lipstick"][:, :, None, None], lips),
-        (hair, beard(lot, side, elevation)),
-        (hair, _brow(lot, side, elevation)),
-        (torch.full_like(dark, 0.015), _lashes(lot, side, elevation)),
+        (expand_colour(features.lipstick), lips),
+        (hair_colour, cover_with_beard(hair.beard, side, elevation)),
+        (hair_colour, cover_with_brows(hair, side, elevation)),
+        (torch.full_like(dark, 0.015), cover_with_lashes(hair, side, elevation)),
         (dark, 0.5 * mouth),
         (dark, 0.8 * nostrils),
     ]
-
-
-def beard(lot: dict[str, Tensor], side: Tensor, elevation: Tensor) -> Tensor:
-    """The share of hair where a lot has beard, moustache or stubble."""
-    jaw = soft_step(-0.42 - elevation - 0.35 * (1 - (side / 0.6).clamp(0, 1)) * (side > 0.25), 0.06)
-    lip = soft_step(elevation + 0.60, 0.03) * soft_step(0.35 - side, 0.05)
-    jaw = jaw * (1 - lip * (1 - column(lot["moustache"])))
-    lips = region(side, elevation, 0.0, -0.66, 0.16, 0.06)
-    place = jaw * (1 - lips).clamp(0, 1) * soft_step(1.4 - side, 0.1)
-    place = place * soft_step(elevation + 1.25, 0.1)
-    hairs = 0.8 + 0.2 * lot["beard_grain"]
-    return place * torch.maximum(column(lot["stubble"]), column(lot["beard"])) * hairs
-
-
-def _brow(lot: dict[str, Tensor], side: Tensor, elevation: Tensor) -> Tensor:
-    height, tilt, thick = (column(part) for part in lot["brow_shape"].unbind(1))
-    arch = elevation - (0.19 + height + (0.05 + tilt) * (side - 0.1))
-    arch = arch + 0.35 * (side - 0.35).clamp_min(0) ** 2
-    length = soft_step(side - 0.12, 0.03) * soft_step(0.58 - side, 0.04)
-    return column(lot["brow"]) * length * torch.exp(-((arch / (0.032 + thick)) ** 2))
-
-
-def _lashes(lot: dict[str, Tensor], side: Tensor, elevation: Tensor) -> Tensor:
-    lid = elevation - (0.055 - 1.6 * (side - 0.34) ** 2)
-    length = soft_step(0.15 - (side - 0.34).abs(), 0.03)
-    return 0.7 * column(lot["lashes"]) * length * torch.exp(-((lid / 0.014) ** 2))

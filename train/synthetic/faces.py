@@ -1,4 +1,4 @@
-"""The photometric twin as training data: heads ray-cast once, photographed anew on every step."""
+"""Synthetic faces as training data: heads are cast once and rendered anew on every step."""
 
 from functools import partial
 from pathlib import Path
@@ -7,65 +7,71 @@ from typing import Any
 import numpy as np
 from jsonargparse.typing import NonNegativeInt, PositiveInt
 from lightning import LightningDataModule, Trainer
-from numpy.typing import NDArray
-from torch import Tensor
 from torch.utils.data import DataLoader, Dataset
 
 from skinnet.physics import SkinDecoder
 from train.batch import Batch
 from train.stream import StreamLoader, count_seen_samples
-from train.synthetic.head_cache import SPLITS, geometry
-from train.synthetic.head_cast import Buffers
-from train.synthetic.model_skins import Skins, draw_skin, load_skins
+from train.synthetic.head_cache import SPLITS, load_or_cast_heads
+from train.synthetic.head_cast import HeadCast
+from train.synthetic.model_skins import ModelSkins, load_model_skins, wear_model_skin
 from train.synthetic.renderer import render
-from train.synthetic.scene_sampling import draw_lot
+from train.synthetic.scene import HeadBuffers, SceneParameters, map_tensors
+from train.synthetic.scene_sampling import sample_scene
 
 STAGES = {"fit": ("train", "val"), "validate": ("val",), "test": ("test",)}
 """Splits whose heads a stage of training needs."""
 
-Drawn = dict[str, NDArray[Any]]
 
+class SyntheticScenes(Dataset[SceneParameters]):
+    """Random scenes of given heads, sampled from (seed, split, index): the same on every machine.
 
-class Lots(Dataset[Drawn]):
-    """Heads with a lot each, drawn from (seed, split, index): the same on every machine.
+    Heads take turns, so that each is there equally often if the samples are a multiple of them.
 
-    Heads take turns, so that a set as large as their number, or a multiple, has each as often. With
-    `skins`, half of the pictures wear one; all else in them is what it is without. `wide` lots are
-    of training alone.
+    Args:
+        heads: buffers of all heads, stacked.
+        split: train, val or test.
+        samples: number of scenes.
+        seed: of the scenes.
+        skins: skins of a hybrid model; half of the faces then wear one. All else in the scenes is
+            the same with skins and without.
+        domain_randomised: as in `sample_scene`; for training alone.
     """
 
     def __init__(
         self,
-        heads: Drawn,
+        heads: HeadBuffers,
         split: str,
         samples: int,
         seed: int,
-        skins: Skins | None = None,
-        wide: bool = False,
+        skins: ModelSkins | None = None,
+        domain_randomised: bool = False,
     ):
-        self.heads, self.samples, self.skins, self.wide = heads, samples, skins, wide
+        self.heads, self.samples, self.skins = heads, samples, skins
+        self.domain_randomised = domain_randomised
         self.key = (seed, SPLITS[split], 7)
 
     def __len__(self) -> int:
         return self.samples
 
-    def __getitem__(self, index: int) -> Drawn:
-        count, size = self.heads["label"].shape[:2]
-        buffers = {name: value[index % count] for name, value in self.heads.items()}
-        lot = draw_lot(np.random.default_rng([*self.key, index]), size, self.wide)
-        if self.skins is not None:
-            # Draws of its own, so that lots are the same with skins and without.
-            lot |= draw_skin(np.random.default_rng([*self.key, index, 1]), self.skins)
-        return {**buffers, **lot}
+    def __getitem__(self, index: int) -> SceneParameters:
+        number = index % len(self.heads.label)
+        head = map_tensors(lambda values: values[number], self.heads)
+        rng = np.random.default_rng([*self.key, index])
+        scene = sample_scene(rng, head, self.domain_randomised)
+        if self.skins is None:
+            return scene
+        rng = np.random.default_rng([*self.key, index, 1])
+        return scene._replace(face=wear_model_skin(scene.face, rng, self.skins))
 
 
 class SyntheticFaces(LightningDataModule):
-    """Heads with all ground truth under varied skin, light, camera and exposure.
+    """Synthetic faces with all ground truth under varied skin, light, camera and exposure.
 
-    Their geometry is ray-cast once and kept on disk; everything else is drawn afresh on every step
-    and rendered on the device that trains. Training never repeats a picture, and its skin may be
-    darker and shine more than theirs; validation and test have heads of their own, the test cameras
-    of its own too, and both are the same on every run.
+    Geometry is ray-cast once and kept on disk. All else is sampled anew on every step and rendered
+    on the device that trains. Training never repeats a picture, and its skin is
+    domain-randomised: it may be darker and oilier than that of the other splits. Validation and
+    test have heads of their own, test has cameras of its own, and both are the same in every run.
 
     Args:
         size: side of the square pictures in pixels.
@@ -78,10 +84,10 @@ class SyntheticFaces(LightningDataModule):
         test_samples: pictures of the test set.
         ict: ICT-FaceKit's model as an .npz; without it all heads are procedural.
         geometry: folder in which the heads are kept.
-        skins: .npz of `python -m train.synthetic.skins` or `examples/london.py`, skins drawn from a
-            hybrid model; half of the pictures then wear one. Without it skins are painted only.
-        seed: of everything that is drawn.
-        workers: processes that cast heads and draw pictures; 0 does both in the training process.
+        skins: .npz of `python -m train.synthetic.skins` or `examples/london.py`, skins sampled from
+            a hybrid model; half of the faces then wear one. Without it all skins are painted.
+        seed: of everything that is sampled.
+        workers: processes that cast heads and sample scenes; 0 does both in the training process.
     """
 
     def __init__(
@@ -107,62 +113,70 @@ class SyntheticFaces(LightningDataModule):
         self.ict = None if ict is None else Path(ict)
         self.geometry, self.seed, self.workers = Path(geometry), seed, workers
         self.skins_file = None if skins is None else Path(skins)
-        self.skins: Skins | None = None
+        self.skins: ModelSkins | None = None
         self.decoder = SkinDecoder()
-        self.buffers: dict[str, Drawn] = {}
+        self.buffers: dict[str, HeadBuffers] = {}
 
     @property
     def description(self) -> str:
         """What a model card says of these data."""
         kind = "procedural heads" if self.ict is None else "ICT-FaceKit and procedural heads"
-        said = f"{self.heads['train']} {kind} of skinnet's twin, seed {self.seed}, {self.size} px"
-        return said if self.skins_file is None else f"{said}, half with skins of {self.skins_file}"
+        heads = f"{self.heads['train']} {kind} of skinnet's synthetic renderer"
+        text = f"{heads}, seed {self.seed}, {self.size} px"
+        return text if self.skins_file is None else f"{text}, half with skins of {self.skins_file}"
 
     def prepare_data(self) -> None:
         """Cast the heads that are missing; of several processes on a machine, one does."""
         assert self.trainer is not None and self.trainer.state.fn is not None
         for split in STAGES[self.trainer.state.fn.value]:
-            self._cast(split)
+            self._load_heads(split)
 
     def setup(self, stage: str) -> None:
-        """Read the heads that a stage needs, or cast them: fit, validate or test."""
+        """Load the heads that a stage needs, or cast them: fit, validate or test."""
         if self.skins is None and self.skins_file is not None:
-            self.skins = load_skins(self.skins_file)
+            self.skins = load_model_skins(self.skins_file)
         for split in STAGES[stage]:
             if split not in self.buffers:
-                cast = self._cast(split)
-                # Torch counts with signed integers; the bits are the same.
-                self.buffers[split] = cast._replace(seen=cast.seen.view(np.int64))._asdict()
+                self.buffers[split] = self._load_heads(split).to_buffers()
 
-    def _cast(self, split: str) -> Buffers:
+    def _load_heads(self, split: str) -> HeadCast:
         count, workers = self.heads[split], max(self.workers, 1)
-        return geometry(self.geometry, self.size, count, split, self.seed, self.ict, workers)
+        return load_or_cast_heads(
+            self.geometry, self.size, count, split, self.seed, self.ict, workers
+        )
 
     def train_dataloader(self) -> StreamLoader:
+        """Load the training scenes of an epoch."""
         return self.stream(self.samples["train"] // self.batch_size, self.trainer)
 
     def stream(self, steps: int, trainer: Trainer | None) -> StreamLoader:
-        """Training pictures in epochs of that many steps, from where the trainer stands."""
+        """Load training scenes in epochs of that many steps, from the step of the trainer on."""
         samples = max(steps, 1) * self.batch_size
-        lots = Lots(self.buffers["train"], "train", samples, self.seed, self.skins, wide=True)
+        scenes = SyntheticScenes(
+            self.buffers["train"], "train", samples, self.seed, self.skins, domain_randomised=True
+        )
         seen = partial(count_seen_samples, trainer, self.batch_size)
-        return StreamLoader(lots, self.batch_size, samples, seen, self.workers)
+        return StreamLoader(scenes, self.batch_size, samples, seen, self.workers)
 
-    def val_dataloader(self) -> DataLoader[Drawn]:
-        return self._fixed("val")
+    def val_dataloader(self) -> DataLoader[SceneParameters]:
+        """Load the validation scenes."""
+        return self._load_fixed("val")
 
-    def test_dataloader(self) -> DataLoader[Drawn]:
-        return self._fixed("test")
+    def test_dataloader(self) -> DataLoader[SceneParameters]:
+        """Load the test scenes."""
+        return self._load_fixed("test")
 
     def on_after_batch_transfer(self, batch: Any, dataloader_idx: int) -> Batch:
-        lot: dict[str, Tensor] = batch
+        """Render a batch of scenes on the device that it was sent to."""
         testing = self.trainer is not None and self.trainer.testing
-        return self.render(lot, "test" if testing else "train")
+        return self.render(batch, "test" if testing else "train")
 
-    def render(self, lot: dict[str, Tensor], split: str) -> Batch:
-        """Photographs of a batch of lots, with the cameras of a split."""
-        return render(lot, self.decoder.to(lot["f_mel"].device), split)
+    def render(self, scene: SceneParameters, split: str) -> Batch:
+        """Render a batch of scenes with the cameras of a split."""
+        return render(scene, self.decoder.to(scene.light.sky.device), split)
 
-    def _fixed(self, split: str) -> DataLoader[Drawn]:
-        lots = Lots(self.buffers[split], split, self.samples[split], self.seed, self.skins)
-        return DataLoader(lots, self.batch_size, num_workers=self.workers)
+    def _load_fixed(self, split: str) -> DataLoader[SceneParameters]:
+        scenes = SyntheticScenes(
+            self.buffers[split], split, self.samples[split], self.seed, self.skins
+        )
+        return DataLoader(scenes, self.batch_size, num_workers=self.workers)

@@ -1,52 +1,74 @@
-"""Frames of glasses before a synthetic head's eyes."""
+"""Frames of glasses for synthetic heads."""
 
 import numpy as np
 from jaxtyping import Float
 
-from train.synthetic.labelled_mesh import Part, at, joined, part, sheet
+from train.synthetic.labelled_mesh import (
+    LabelledMesh,
+    find_vertex,
+    join,
+    label_mesh,
+    triangulate_grid,
+)
 from train.synthetic.labels import GLASSES
 
-AROUND = 9
+_AROUND = 9
 
-Line = Float[np.ndarray, "points 3"]
+_Line = Float[np.ndarray, "points 3"]
 
 
-def glasses(skin: Part, eyes: Float[np.ndarray, "2 3"], draw: np.random.Generator) -> Part:
-    """Two rims, the bridge and the temples; `eyes` are the foremost points of both."""
-    wide, tall = draw.uniform(0.2, 0.26), draw.uniform(0.13, 0.2)
-    power, thick = draw.uniform(2.0, 4.0), draw.uniform(0.008, 0.024)
-    wide = min(wide, np.abs(eyes[:, 0]).mean() - 0.055)
+def make_glasses(
+    skin: LabelledMesh, eyes: Float[np.ndarray, "2 3"], rng: np.random.Generator
+) -> LabelledMesh:
+    """Make two rims, the bridge and the temples.
+
+    Args:
+        skin: the head's skin.
+        eyes: the foremost points of both eyes.
+        rng: random numbers.
+
+    Returns:
+        The frame.
+    """
+    half_width, half_height = rng.uniform(0.2, 0.26), rng.uniform(0.13, 0.2)
+    power, radius = rng.uniform(2.0, 4.0), rng.uniform(0.008, 0.024)
+    half_width = min(half_width, np.abs(eyes[:, 0]).mean() - 0.055)
     middle = np.abs(eyes).mean(0) * [1, 0, 0] + [0.015, eyes[:, 1].mean() - 0.02, 0]
-    rim = middle + _outline(wide, tall, power)
-    front = _plane(skin, rim)
-    rim[:, 2] = front - _bow(rim[:, 0])
+    rim = middle + _trace_rim(half_width, half_height, power)
+    front = _find_front(skin, rim)
+    rim[:, 2] = front - _bend_back(rim[:, 0])
     inner, outer = rim[rim[:, 0].argmin()], rim[rim[:, 0].argmax()]
-    lines = [(rim, thick), (_temple(skin, outer, middle[1] + 0.4 * tall), 0.8 * thick)]
-    both = [_tube(line * side, wire) for line, wire in lines for side in ([1, 1, 1], [-1, 1, 1])]
-    return joined([*both, _tube(_bridge(skin, inner, 0.3 * tall), thick)])
+    lines = [
+        (rim, radius),
+        (_trace_temple(skin, outer, middle[1] + 0.4 * half_height), 0.8 * radius),
+    ]
+    both = [
+        _make_wire(line * side, wire) for line, wire in lines for side in ([1, 1, 1], [-1, 1, 1])
+    ]
+    return join([*both, _make_wire(_trace_bridge(skin, inner, 0.3 * half_height), radius)])
 
 
-def _outline(wide: float, tall: float, power: float) -> Line:
-    turn = np.linspace(0, 2 * np.pi, 61)
-    x, y = np.cos(turn), np.sin(turn)
+def _trace_rim(half_width: float, half_height: float, power: float) -> _Line:
+    angle = np.linspace(0, 2 * np.pi, 61)
+    x, y = np.cos(angle), np.sin(angle)
     out = (np.abs(x) ** power + np.abs(y) ** power) ** (-1 / power)
-    return np.stack([wide * out * x, tall * out * y, 0 * x], 1)
+    return np.stack([half_width * out * x, half_height * out * y, 0 * x], 1)
 
 
-def _bow(x: Float[np.ndarray, "points"]) -> Float[np.ndarray, "points"]:
-    """How far a front bows back away from the nose."""
+def _bend_back(x: Float[np.ndarray, "points"]) -> Float[np.ndarray, "points"]:
+    """How far the front bends back, by the distance from the nose."""
     return 0.28 * (np.abs(x) - 0.1).clip(0) ** 2
 
 
-def _plane(skin: Part, rim: Line) -> float:
-    """Where a front clears brows and cheeks under it, though not the nose between the rims."""
+def _find_front(skin: LabelledMesh, rim: _Line) -> float:
+    """Depth at which the front clears brows and cheeks, though not the nose between the rims."""
     x, y = np.abs(skin.vertices[:, 0]), skin.vertices[:, 1]
     (left, low), (right, high) = rim[:, :2].min(0), rim[:, :2].max(0)
     under = (x > left + 0.02) & (x < right) & (y > low) & (y < high) & (skin.vertices[:, 2] > 0)
-    return float((skin.vertices[under, 2] + _bow(x[under])).max() + 0.015)
+    return float((skin.vertices[under, 2] + _bend_back(x[under])).max() + 0.015)
 
 
-def _bridge(skin: Part, inner: Float[np.ndarray, "3"], lift: float) -> Line:
+def _trace_bridge(skin: LabelledMesh, inner: Float[np.ndarray, "3"], lift: float) -> _Line:
     x = np.linspace(-inner[0], inner[0], 21)
     arch = 1 - (x / inner[0]) ** 2
     y = inner[1] + lift * (0.6 + 0.4 * arch)
@@ -57,8 +79,8 @@ def _bridge(skin: Part, inner: Float[np.ndarray, "3"], lift: float) -> Line:
     return np.stack([x, y, inner[2] + (max(nose, inner[2]) - inner[2]) * arch], 1)
 
 
-def _temple(skin: Part, outer: Float[np.ndarray, "3"], height: float) -> Line:
-    hinge, ear = at(skin, 1.15, 0.12), at(skin, 1.4, 0.12)
+def _trace_temple(skin: LabelledMesh, outer: Float[np.ndarray, "3"], height: float) -> _Line:
+    hinge, ear = find_vertex(skin, 1.15, 0.12), find_vertex(skin, 1.4, 0.12)
     share = np.linspace(0, 1, 15)[:, None]
     side = np.array([max(outer[0], hinge[0]) + 0.03, height, outer[2] - 0.04])
     end = np.array([max(side[0], ear[0]) + 0.01, max(ear[1], 0.05), ear[2] - 0.1])
@@ -67,15 +89,17 @@ def _temple(skin: Part, outer: Float[np.ndarray, "3"], height: float) -> Line:
     )
 
 
-def _tube(line: Line, radius: float) -> Part:
-    """A round wire along a line."""
+def _make_wire(line: _Line, radius: float) -> LabelledMesh:
+    """Make a round wire along a line."""
     along = np.gradient(line, axis=0)
     along = along / np.linalg.norm(along, axis=1, keepdims=True).clip(1e-9)
-    help_ = np.where(np.abs(along[:, 2:]) > 0.7, [[0.0, 1.0, 0.0]], [[0.0, 0.0, 1.0]])
-    right = np.cross(along, help_)
+    upright = np.where(np.abs(along[:, 2:]) > 0.7, [[0.0, 1.0, 0.0]], [[0.0, 0.0, 1.0]])
+    right = np.cross(along, upright)
     right = right / np.linalg.norm(right, axis=1, keepdims=True).clip(1e-9)
     up = np.cross(right, along)
-    turn = np.linspace(0, 2 * np.pi, AROUND)[:, None, None]
-    points = line + radius * (np.cos(turn) * right + np.sin(turn) * up)
-    count = AROUND * len(line)
-    return part(points.reshape(-1, 3), sheet(AROUND, len(line)), GLASSES, np.zeros((count, 2)))
+    angle = np.linspace(0, 2 * np.pi, _AROUND)[:, None, None]
+    points = line + radius * (np.cos(angle) * right + np.sin(angle) * up)
+    count = _AROUND * len(line)
+    return label_mesh(
+        points.reshape(-1, 3), triangulate_grid(_AROUND, len(line)), GLASSES, np.zeros((count, 2))
+    )

@@ -1,4 +1,4 @@
-"""Casts of many heads, kept on disk and built only where they are missing."""
+"""Casts of many heads, kept on disk and made only where they are missing."""
 
 import hashlib
 import json
@@ -13,20 +13,29 @@ from zipfile import BadZipFile
 import numpy as np
 
 from skinnet.files import make_folder, write_atomically
-from train.synthetic.head_cast import Buffers, cast
-from train.synthetic.heads import ict_head, procedural_head
-from train.synthetic.ict_model import IctHead, load_ict_head
+from train.synthetic.head_cast import HeadCast, cast_head
+from train.synthetic.heads import make_ict_head, make_procedural_head
+from train.synthetic.ict_model import IctModel, read_ict_model
 
 VERSION = 1
-"""Raise it with every change to what heads or their casts are; older files are then built anew."""
+"""Raise it with every change to heads or their casts; older files are then not used."""
 
 SPLITS = {"train": 0, "val": 1, "test": 2}
-ICT_SHARE = 0.7
+_ICT_SHARE = 0.7
+
+_STORED = {
+    "label": "label",
+    "normal": "normal",
+    "chart": "chart",
+    "sky_visibility": "openness",
+    "visibility_mask": "seen",
+}
+"""Names of the arrays in the files, two of which are older than the names in the code."""
 
 
 @dataclass(frozen=True)
-class Settings:
-    """What decides about a head's cast, apart from its split and number."""
+class CastSettings:
+    """All that a head's cast depends on, apart from its split and number."""
 
     size: int
     seed: int
@@ -34,11 +43,12 @@ class Settings:
     version: int
 
     @property
-    def key(self) -> str:
+    def folder(self) -> str:
+        """Name of the folder of such casts."""
         return f"v{self.version}-{self.size}px-seed{self.seed}-{self.kind}"
 
 
-def geometry(
+def load_or_cast_heads(
     folder: Path,
     size: int,
     count: int,
@@ -46,76 +56,93 @@ def geometry(
     seed: int,
     ict: Path | None = None,
     workers: int = 1,
-) -> Buffers:
-    """Casts of `count` heads, stacked; train, val and test never share a head.
+) -> HeadCast:
+    """Load the casts of heads, and cast those that are missing.
 
-    Each lies in `folder` in a file of its own, so that a build that was cut short goes on where it
-    was. With the file `ict` of ICT-FaceKit most heads are of it, otherwise all are procedural.
+    Each cast has a file of its own, so that work that was interrupted goes on where it was.
+
+    Args:
+        folder: where the casts are kept.
+        size: side of the pictures in pixels.
+        count: number of heads.
+        split: train, val or test, which never share a head.
+        seed: of the heads.
+        ict: file of ICT-FaceKit, of which most heads are then made; all others are procedural.
+        workers: processes that cast heads.
+
+    Returns:
+        The casts, stacked.
+
+    Raises:
+        InputError: if the folder cannot be made, or `ict` cannot be read.
     """
-    settings = Settings(size, seed, "procedural" if ict is None else _fingerprint(ict), VERSION)
-    place = make_folder(folder / settings.key, "give another folder for the geometry")
-    stack = _empty(count, size)
-    missing = [i for i in range(count) if not _fill(stack, i, _file(place, split, i), settings)]
+    settings = CastSettings(size, seed, "procedural" if ict is None else _identify(ict), VERSION)
+    place = make_folder(folder / settings.folder, "give another folder for the geometry")
+    stack = _make_empty_stack(count, size)
+    missing = [
+        i for i in range(count) if not _load(stack, i, _name_file(place, split, i), settings)
+    ]
     jobs = [(place, settings, split, index, ict) for index in missing]
     if jobs and ict is None:
-        _say("Without the file of ICT-FaceKit all heads are procedural.\n")
-    for done, index in enumerate(_built(jobs, workers), 1):
-        _say(f"\rHeads of {split}: {done:,} of {len(jobs):,} cast.")
-        assert _fill(stack, index, _file(place, split, index), settings)
-    _say("\n" if jobs else "")
+        _report("Without the file of ICT-FaceKit all heads are procedural.\n")
+    for done, index in enumerate(_run(jobs, workers), 1):
+        _report(f"\rHeads of {split}: {done:,} of {len(jobs):,} cast.")
+        assert _load(stack, index, _name_file(place, split, index), settings)
+    _report("\n" if jobs else "")
     return stack
 
 
-Job = tuple[Path, Settings, str, int, Path | None]
+_Job = tuple[Path, CastSettings, str, int, Path | None]
 
 
-def _built(jobs: list[Job], workers: int) -> Iterator[int]:
+def _run(jobs: list[_Job], workers: int) -> Iterator[int]:
     if min(workers, len(jobs)) < 2:
-        yield from map(_build, jobs)
+        yield from map(_cast, jobs)
         return
     # Threads that Embree and torch hold do not survive a fork.
     with get_context("spawn").Pool(min(workers, len(jobs))) as pool:
-        yield from pool.imap_unordered(_build, jobs)
+        yield from pool.imap_unordered(_cast, jobs)
 
 
-def _build(job: Job) -> int:
+def _cast(job: _Job) -> int:
     place, settings, split, index, ict = job
-    draw = np.random.default_rng([settings.seed, SPLITS[split], index])
-    if ict is not None and draw.random() < ICT_SHARE:
-        head = ict_head(_model(ict), draw)
+    rng = np.random.default_rng([settings.seed, SPLITS[split], index])
+    if ict is not None and rng.random() < _ICT_SHARE:
+        head = make_ict_head(_read_model(ict), rng)
     else:
-        head = procedural_head(draw)
-    _write(_file(place, split, index), cast(head, draw, settings.size), settings)
+        head = make_procedural_head(rng)
+    _write(_name_file(place, split, index), cast_head(head, rng, settings.size), settings)
     return index
 
 
 @cache
-def _model(path: Path) -> IctHead:
-    return load_ict_head(path)
+def _read_model(path: Path) -> IctModel:
+    return read_ict_model(path)
 
 
 @cache
-def _fingerprint(path: Path) -> str:
-    load_ict_head(path)
+def _identify(path: Path) -> str:
+    read_ict_model(path)
     return "ict" + hashlib.sha256(path.read_bytes()).hexdigest()[:8]
 
 
-def _file(place: Path, split: str, index: int) -> Path:
+def _name_file(place: Path, split: str, index: int) -> Path:
     return place / f"{split}_{index:05d}.npz"
 
 
-def _write(path: Path, cast_: Buffers, settings: Settings) -> None:
+def _write(path: Path, cast: HeadCast, settings: CastSettings) -> None:
+    arrays = {_STORED[name]: value for name, value in cast._asdict().items()}
     with write_atomically(path) as part:
-        np.savez(part, settings=json.dumps(asdict(settings)), **cast_._asdict())
+        np.savez(part, settings=json.dumps(asdict(settings)), **arrays)
 
 
-def _fill(stack: Buffers, index: int, path: Path, settings: Settings) -> bool:
-    """Whether a file holds the cast asked for, which is then copied into the stack."""
+def _load(stack: HeadCast, index: int, path: Path, settings: CastSettings) -> bool:
+    """Copy a cast into the stack, if the file holds the one that is asked for."""
     try:
         with path.open("rb") as stream, np.load(stream, allow_pickle=False) as file:
             if json.loads(str(file["settings"])) != asdict(settings):
                 return False
-            arrays = [file[name] for name in Buffers._fields]
+            arrays = [file[_STORED[name]] for name in HeadCast._fields]
     except (OSError, ValueError, KeyError, EOFError, TypeError, BadZipFile):
         return False
     for whole, one in zip(stack, arrays, strict=True):
@@ -126,9 +153,9 @@ def _fill(stack: Buffers, index: int, path: Path, settings: Settings) -> bool:
     return True
 
 
-def _empty(count: int, size: int) -> Buffers:
+def _make_empty_stack(count: int, size: int) -> HeadCast:
     square = (count, size, size)
-    return Buffers(
+    return HeadCast(
         np.zeros(square, np.uint8),
         np.zeros((*square, 3), np.int8),
         np.zeros((*square, 2), np.float16),
@@ -137,6 +164,6 @@ def _empty(count: int, size: int) -> Buffers:
     )
 
 
-def _say(text: str) -> None:
+def _report(text: str) -> None:
     sys.stderr.write(text)
     sys.stderr.flush()

@@ -1,43 +1,52 @@
-"""Whole synthetic heads: bald ones with hair, glasses and shoulders put on."""
+"""Whole synthetic heads: bald ones, completed by hair, glasses and shoulders."""
 
 import numpy as np
 from jaxtyping import Float
 
-from train.synthetic.bald_procedural import bare_procedural
-from train.synthetic.body import Neck, bust
-from train.synthetic.glasses import glasses
-from train.synthetic.hair import cap, curtain, draw_cut
-from train.synthetic.ict_model import IctHead, bare_ict
-from train.synthetic.labelled_mesh import Part, joined, mirrored, only
+from train.synthetic.bald_ict import make_bald_ict
+from train.synthetic.bald_procedural import make_bald_procedural
+from train.synthetic.body import Neck, make_bust
+from train.synthetic.glasses import make_glasses
+from train.synthetic.hair import make_cap, make_long_hair, sample_haircut
+from train.synthetic.ict_model import IctModel
+from train.synthetic.labelled_mesh import LabelledMesh, join, mirror, select
 from train.synthetic.labels import EYE, SKIN
 
-Head = Part
+
+def make_procedural_head(rng: np.random.Generator) -> LabelledMesh:
+    """Make a whole head of `skinnet.shape.procedural_head`."""
+    return complete_head(*make_bald_procedural(rng), rng)
 
 
-def procedural_head(draw: np.random.Generator) -> Head:
-    """A head of `skinnet.shape.procedural_head`, dressed."""
-    return dressed(*bare_procedural(draw), draw)
+def make_ict_head(model: IctModel, rng: np.random.Generator) -> LabelledMesh:
+    """Make a whole head of ICT-FaceKit with an expression and a gaze; half are mirrored."""
+    bald, neck = make_bald_ict(model, rng)
+    if rng.random() < 0.5:
+        bald, neck = mirror(bald), neck._replace(x=-neck.x)
+    return complete_head(bald, neck, rng)
 
 
-def ict_head(model: IctHead, draw: np.random.Generator) -> Head:
-    """A head of ICT-FaceKit with an expression and a gaze, dressed; half are mirrored."""
-    bare, neck = bare_ict(model, draw)
-    if draw.random() < 0.5:
-        bare, neck = mirrored(bare), neck._replace(x=-neck.x)
-    return dressed(bare, neck, draw)
+def complete_head(bald: LabelledMesh, neck: Neck, rng: np.random.Generator) -> LabelledMesh:
+    """Put hair and shoulders on a bald head, and glasses on one in seven.
 
+    Args:
+        bald: skin, eyes and mouth.
+        neck: where its neck ends.
+        rng: random numbers.
 
-def dressed(bare: Part, neck: Neck, draw: np.random.Generator) -> Head:
-    skin, cut = only(bare, SKIN), draw_cut(draw)
-    parts = [bare, bust(neck, draw), cap(skin, cut, draw)]
+    Returns:
+        The whole head.
+    """
+    skin, cut = select(bald, SKIN), sample_haircut(rng)
+    parts = [bald, make_bust(neck, rng), make_cap(skin, cut, rng)]
     if cut.length:
-        parts.append(curtain(skin, cut, draw))
-    if draw.random() < 0.15:
-        parts.append(glasses(skin, _eyes(only(bare, EYE)), draw))
-    return joined(parts)
+        parts.append(make_long_hair(skin, cut, rng))
+    if rng.random() < 0.15:
+        parts.append(make_glasses(skin, _find_eyes(select(bald, EYE)), rng))
+    return join(parts)
 
 
-def _eyes(eyes: Part) -> Float[np.ndarray, "2 3"]:
+def _find_eyes(eyes: LabelledMesh) -> Float[np.ndarray, "2 3"]:
     """The foremost points of both eyes."""
     sides = [eyes.vertices[sign * eyes.vertices[:, 0] > 0] for sign in (1, -1)]
     return np.stack([(one.min(0) + one.max(0)) / 2 * [1, 1, 0] + [0, 0, one[:, 2].max()]

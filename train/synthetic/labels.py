@@ -1,4 +1,4 @@
-"""What a pixel or a triangle of a synthetic head is."""
+"""What a pixel or a triangle of a synthetic head shows."""
 
 BACKGROUND, SKIN, EYE, TEETH, MOUTH, HAIR, GLASSES, CLOTH = range(8)
-"""MOUTH is what is red and dark within: gums, tongue, the mouth's walls and the eyes' sockets."""
+"""MOUTH is all that is red and dark inside: gums, tongue, walls of the mouth, eye sockets."""

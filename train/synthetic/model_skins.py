@@ -1,53 +1,92 @@
-"""Files of skins drawn from a hybrid model, and who wears which."""
+"""Skins of a hybrid model: their file, and faces that wear them."""
 
 from pathlib import Path
 from typing import NamedTuple
 from zipfile import BadZipFile
 
 import numpy as np
+import torch
 from jaxtyping import Float16
 
 from skinnet.errors import InputError
 from skinnet.files import write_atomically
-from train.synthetic.scene_sampling import CHART, Lot
+from train.synthetic.scene import CHART_SIZE, FaceParameters
 
-WORN = 0.5
-"""Share of the pictures that wear a skin, where there are any."""
+WORN_SHARE = 0.5
+"""Share of the pictures whose face wears a skin, where there are any."""
+
+_STORED = {"melanin": "melanin", "hemoglobin": "blood"}
+"""Names of the arrays in the file."""
 
 
-class Skins(NamedTuple):
+class ModelSkins(NamedTuple):
     """Natural logarithms of a pigment over the face's own mean, 0 where nothing is known."""
 
     melanin: Float16[np.ndarray, "samples rows columns"]
-    blood: Float16[np.ndarray, "samples rows columns"]
+    hemoglobin: Float16[np.ndarray, "samples rows columns"]
 
 
-def draw_skin(rng: np.random.Generator, skins: Skins) -> Lot:
-    """What a lot says of the skin of a hybrid model: none, or one of these, mirrored or not."""
-    worn = rng.random() < WORN
-    number, turn = rng.integers(len(skins.melanin)), rng.choice([1, -1])
-    charts = (worn * one[number, :, ::turn].astype(np.float32) for one in skins)
-    melanin, blood = (np.ascontiguousarray(one)[None] for one in charts)
-    return {"worn": np.float32(worn), "skin_melanin": melanin, "skin_blood": blood}
+def wear_model_skin(
+    face: FaceParameters, rng: np.random.Generator, skins: ModelSkins
+) -> FaceParameters:
+    """Let a face wear one of the skins, mirrored or not, or leave it as it is.
+
+    Args:
+        face: one face, without a batch axis.
+        rng: random numbers.
+        skins: one or more skins.
+
+    Returns:
+        The face; a share of `WORN_SHARE` wears a skin.
+    """
+    worn = rng.random() < WORN_SHARE
+    number, step = rng.integers(len(skins.melanin)), rng.choice([1, -1])
+    charts = (worn * one[number, :, ::step].astype(np.float32) for one in skins)
+    melanin, hemoglobin = (torch.from_numpy(np.ascontiguousarray(one)[None]) for one in charts)
+    skin = face.skin._replace(
+        melanin=face.skin.melanin._replace(model_skin=melanin),
+        hemoglobin=face.skin.hemoglobin._replace(model_skin=hemoglobin),
+        has_model_skin=torch.tensor(float(worn)),
+    )
+    return face._replace(skin=skin)
 
 
-def save_skins(path: Path, skins: Skins) -> None:
-    """Write skins as .npz, whole or not at all."""
+def save_model_skins(path: Path, skins: ModelSkins) -> None:
+    """Write skins as .npz, whole or not at all.
+
+    Args:
+        path: ends in .npz.
+        skins: one or more skins.
+
+    Raises:
+        InputError: if the path ends otherwise or cannot be written.
+    """
     if path.suffix != ".npz":
         raise InputError(f"{path} does not end in .npz, as files of skins do.")
+    arrays = {_STORED[name]: value for name, value in skins._asdict().items()}
     try:
         path.parent.mkdir(parents=True, exist_ok=True)
         with write_atomically(path) as part:
-            np.savez_compressed(part, **skins._asdict())
+            np.savez_compressed(part, **arrays)
     except OSError as error:
         raise InputError(f"{path} cannot be written ({error.strerror}); check the path.") from error
 
 
-def load_skins(path: Path) -> Skins:
-    """Read skins; raises `InputError` for a file that is missing, damaged or something else."""
+def load_model_skins(path: Path) -> ModelSkins:
+    """Read skins.
+
+    Args:
+        path: as `save_model_skins` writes it.
+
+    Returns:
+        The skins.
+
+    Raises:
+        InputError: for a file that is missing, damaged or something else.
+    """
     try:
         with path.open("rb") as stream, np.load(stream, allow_pickle=False) as file:
-            skins = Skins(*(file[name] for name in Skins._fields))
+            skins = ModelSkins(*(file[_STORED[name]] for name in ModelSkins._fields))
     except KeyError as error:
         raise InputError(
             f"{path} lacks melanin or blood; make it with python -m train.synthetic.skins."
@@ -55,15 +94,16 @@ def load_skins(path: Path) -> Skins:
     except (OSError, ValueError, EOFError, TypeError, AttributeError, BadZipFile) as error:
         raise InputError(f"{path} cannot be read as an .npz of arrays; make it again.") from error
     for name, charts in skins._asdict().items():
-        _check(path, name, charts, len(skins.melanin) if skins.melanin.ndim else 0)
+        _check(path, _STORED[name], charts, len(skins.melanin) if skins.melanin.ndim else 0)
     return skins
 
 
 def _check(path: Path, name: str, charts: np.ndarray, count: int) -> None:
-    if charts.shape != (count, *CHART) or not count:
+    rows, columns = CHART_SIZE
+    if charts.shape != (count, rows, columns) or not count:
         raise InputError(
-            f"{path}: {name} is {charts.shape} and should be (skins, {CHART[0]}, {CHART[1]}); make "
-            "it again with this skinnet."
+            f"{path}: {name} is {charts.shape} and should be (skins, {rows}, {columns}); make it "
+            "again with this skinnet."
         )
     if not np.issubdtype(charts.dtype, np.floating) or not np.isfinite(charts).all():
-        raise InputError(f"{path}: {name} holds what is no finite number; make it again.")
+        raise InputError(f"{path}: {name} holds values that are not finite numbers; make it again.")

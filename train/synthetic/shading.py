@@ -1,4 +1,4 @@
-"""Diffuse light and gloss on the geometry buffers of a batch of heads."""
+"""Diffuse shading and specular reflection on the buffers of a batch of heads."""
 
 from typing import NamedTuple
 
@@ -6,19 +6,20 @@ import torch
 from jaxtyping import Float, Int
 from torch import Tensor
 
-from train.synthetic.directions import DIRECTIONS
-from train.synthetic.tensors import column
+from train.synthetic.directions import LIGHT_DIRECTIONS
+from train.synthetic.scene import GlossParameters, LightParameters
+from train.synthetic.tensors import expand_scalar
 
-NEAREST = 5
-"""Directions that stand for one lamp: an area, so that shadows have soft edges."""
+_NEAREST = 5
+"""Directions that stand for one lamp. A lamp is an area, so that shadows have soft edges."""
 
-F0 = 0.028
+_F0 = 0.028
 """Reflectance of skin at normal incidence, from an index of refraction of 1.4."""
 
 Map = Float[Tensor, "batch 1 height width"]
 
 
-class Shade(NamedTuple):
+class Shading(NamedTuple):
     """Diffuse shading and specular reflection, relative to a white diffuser facing the light."""
 
     diffuse: Map
@@ -26,69 +27,91 @@ class Shade(NamedTuple):
 
 
 def shade(
-    lot: dict[str, Tensor],
+    light: LightParameters,
+    gloss: GlossParameters,
     normal: Float[Tensor, "batch 3 height width"],
-    openness: Map,
-    seen: Int[Tensor, "batch height width"],
+    sky_visibility: Map,
+    visibility_mask: Int[Tensor, "batch height width"],
     oil: Map,
-) -> Shade:
-    """Light of the sky and of three lamps with their shadows (Blinn and Phong's lobe, Schlick's
-    Fresnel term).
+) -> Shading:
+    """Shade surfaces by a sky and by lamps that cast shadows.
 
-    `seen` holds a bit for each of `DIRECTIONS`, `openness` the share of the sky.
+    Args:
+        light: sky and lamps.
+        gloss: oil and roughness of each picture's skin.
+        normal: unit normals in the camera's axes.
+        sky_visibility: share of the sky that nothing hides, in [0, 1].
+        visibility_mask: a bit for each of `LIGHT_DIRECTIONS`, as in `HeadBuffers`.
+        oil: oil of each pixel relative to its picture's.
+
+    Returns:
+        Both kinds of light, relative to a white diffuser facing the light.
+
+    Source:
+        Lobe of Blinn and Phong, Fresnel term of Schlick.
     """
-    sky = _sky(lot["sky"], normal).clamp_min(0.03) * openness
+    sky = _shade_sky(light.sky, normal).clamp_min(0.03) * sky_visibility
     diffuse, lobes = sky, torch.zeros_like(sky)
-    sharpness = column(2 / lot["roughness"] ** 4 - 2)
+    sharpness = expand_scalar(2 / gloss.roughness**4 - 2)
     for lamp, strength, softness in zip(
-        lot["lamps"].unbind(1), lot["strength"].unbind(1), lot["softness"].unbind(1), strict=True
+        light.lamps.unbind(1), light.strength.unbind(1), light.softness.unbind(1), strict=True
     ):
-        facing = torch.einsum("bi,bihw->bhw", lamp, normal)[:, None].clamp_min(0)
-        light = column(strength) * facing * visible(seen, lamp, softness)
-        diffuse = diffuse + light
-        lobes = lobes + light * _lobe(lamp, normal, sharpness)
-    # The rough share of the surface sends a sky and lamps of any direction to the camera.
-    specular = (lobes + _rim(normal) * diffuse) * column(lot["oil"]) * oil
-    return Shade(diffuse, specular)
+        cosine = torch.einsum("bi,bihw->bhw", lamp, normal)[:, None].clamp_min(0)
+        visibility = find_lamp_visibility(visibility_mask, lamp, softness)
+        irradiance = expand_scalar(strength) * cosine * visibility
+        diffuse = diffuse + irradiance
+        lobes = lobes + irradiance * _evaluate_lobe(lamp, normal, sharpness)
+    # The rough share of the surface sends the light of all directions to the camera.
+    specular = (lobes + _reflect_at_rim(normal) * diffuse) * expand_scalar(gloss.oil) * oil
+    return Shading(diffuse, specular)
 
 
-def visible(
-    seen: Int[Tensor, "batch height width"],
+def find_lamp_visibility(
+    visibility_mask: Int[Tensor, "batch height width"],
     lamp: Float[Tensor, "batch 3"],
     softness: Float[Tensor, "batch"],
 ) -> Map:
-    """Share of a lamp of that half width, in radians, that each pixel sees."""
-    cosine, index = (lamp @ torch.from_numpy(DIRECTIONS.copy()).to(lamp).T).topk(NEAREST, dim=1)
-    apart = (2 - 2 * cosine).clamp_min(0)
-    weight = torch.softmax(-apart / (2 * softness[:, None] ** 2 + 0.02), 1)
-    share = torch.zeros_like(seen, dtype=lamp.dtype)
-    for k in range(NEAREST):
-        bit = (seen >> index[:, k, None, None]) & 1
+    """Find the share of a lamp that each pixel sees.
+
+    Args:
+        visibility_mask: a bit for each of `LIGHT_DIRECTIONS`.
+        lamp: unit vector towards the lamp.
+        softness: half width of the lamp in radians.
+
+    Returns:
+        Shares in [0, 1].
+    """
+    directions = torch.from_numpy(LIGHT_DIRECTIONS.copy()).to(lamp)
+    cosine, index = (lamp @ directions.T).topk(_NEAREST, dim=1)
+    squared_distance = (2 - 2 * cosine).clamp_min(0)
+    weight = torch.softmax(-squared_distance / (2 * softness[:, None] ** 2 + 0.02), 1)
+    share = torch.zeros_like(visibility_mask, dtype=lamp.dtype)
+    for k in range(_NEAREST):
+        bit = (visibility_mask >> index[:, k, None, None]) & 1
         share = share + weight[:, k, None, None] * bit
     return share[:, None]
 
 
-def _sky(sky: Float[Tensor, "batch 9"], normal: Float[Tensor, "batch 3 height width"]) -> Map:
-    """Irradiance of a sky of nine spherical harmonics, unnormalised: 1, y, z, x and the second
-    order."""
+def _shade_sky(sky: Float[Tensor, "batch 9"], normal: Float[Tensor, "batch 3 height width"]) -> Map:
+    """Irradiance by spherical harmonics, unnormalised: 1, y, z, x and the second order."""
     x, y, z = normal.unbind(1)
     one = torch.ones_like(x)
     basis = torch.stack([one, y, z, x, x * y, y * z, 3 * z * z - 1, x * z, x * x - y * y], 1)
     return torch.einsum("bk,bkhw->bhw", sky, basis)[:, None]
 
 
-def _rim(normal: Float[Tensor, "batch 3 height width"]) -> Map:
-    return F0 + (1 - F0) * 0.25 * (1 - normal[:, 2:].clamp(0, 1)) ** 5
+def _reflect_at_rim(normal: Float[Tensor, "batch 3 height width"]) -> Map:
+    return _F0 + (1 - _F0) * 0.25 * (1 - normal[:, 2:].clamp(0, 1)) ** 5
 
 
-def _lobe(
+def _evaluate_lobe(
     lamp: Float[Tensor, "batch 3"],
     normal: Float[Tensor, "batch 3 height width"],
     sharpness: Float[Tensor, "batch 1 1 1"],
 ) -> Map:
     half = lamp + lamp.new_tensor([0, 0, 1])
     half = half / half.norm(dim=1, keepdim=True)
-    glint = torch.einsum("bi,bihw->bhw", half, normal)[:, None].clamp_min(1e-4)
-    fresnel = F0 + (1 - F0) * (1 - column(half[:, 2])).clamp_min(0) ** 5
-    lobe: Map = (sharpness + 2) / 8 * fresnel * glint**sharpness
+    cosine = torch.einsum("bi,bihw->bhw", half, normal)[:, None].clamp_min(1e-4)
+    fresnel = _F0 + (1 - _F0) * (1 - expand_scalar(half[:, 2])).clamp_min(0) ** 5
+    lobe: Map = (sharpness + 2) / 8 * fresnel * cosine**sharpness
     return lobe

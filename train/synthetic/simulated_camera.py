@@ -1,4 +1,4 @@
-"""The cameras that were measured, and what they do to linear light."""
+"""Cameras of the synthetic renderer: measured sensors, and all that follows them."""
 
 from functools import cache
 
@@ -10,72 +10,105 @@ from kornia.filters import gaussian_blur2d
 from torch import Tensor
 
 from skinnet.physics import Capture, SpectralCamera, load_cameras, spectrum_to_srgb, to_display
-from train.synthetic.tensors import column
+from train.synthetic.scene import CameraParameters, LightParameters
+from train.synthetic.tensors import expand_scalar
 
 HELD_OUT = 10
-"""Cameras that only the test split uses."""
+"""Number of measured cameras that only the test split uses."""
 
-PIVOT = 0.18
-"""Linear value that the tone curve's contrast leaves where it is."""
+_PIVOT = 0.18
+"""Linear value that the contrast of the tone curve does not change."""
 
 Image = Float[Tensor, "batch 3 height width"]
 
 
 @cache
-def numbers(split: str) -> tuple[int, ...]:
-    """Places in the table of the cameras of a split: the test's are its own."""
+def select_sensors(split: str) -> tuple[int, ...]:
+    """Select the measured cameras of a split; train and val share theirs, test has its own.
+
+    Args:
+        split: train, val or test.
+
+    Returns:
+        Rows of the table of cameras.
+    """
     order = np.random.default_rng(0).permutation(len(load_cameras()))
-    mine = order[:HELD_OUT] if split == "test" else order[HELD_OUT:]
-    return tuple(sorted(int(place) for place in mine))
+    selected = order[:HELD_OUT] if split == "test" else order[HELD_OUT:]
+    return tuple(sorted(int(row) for row in selected))
 
 
-def pictured(
-    lot: dict[str, Tensor], camera: SpectralCamera, split: str
+def simulate_sensor(
+    light: LightParameters, camera: CameraParameters, model: SpectralCamera, split: str
 ) -> tuple[Float[Tensor, "batch wavelength 3"], Capture]:
-    """The map of each lot from spectra to linear sRGB by a measured camera, and its capture, in
-    which the camera is the nearest that the basis can say."""
-    places = torch.tensor(numbers(split), device=lot["pick"].device)
-    chosen = places[(lot["pick"] * len(places)).long().clamp_max(len(places) - 1)]
-    curves = torch.stack(list(load_cameras().values())).to(camera.mean)[chosen]
-    light = camera.mix_lights(lot["light"], lot["temperature"])
-    red, blue = lot["white_balance"].unbind(-1)
+    """Put measured sensors under lights.
+
+    Args:
+        light: spectrum of each picture's light.
+        camera: sensor and white balance of each picture.
+        model: statistical model of cameras, in whose terms the capture is described.
+        split: train, val or test.
+
+    Returns:
+        The matrices from reflectance spectra to linear sRGB, and the captures. A capture describes
+        its sensor by the nearest one in the model's basis.
+    """
+    rows = torch.tensor(select_sensors(split), device=camera.sensor.device)
+    chosen = rows[(camera.sensor * len(rows)).long().clamp_max(len(rows) - 1)]
+    curves = torch.stack(list(load_cameras().values())).to(model.mean)[chosen]
+    spectrum = model.mix_lights(light.mixture, light.temperature)
+    red, blue = camera.white_balance.unbind(-1)
     gain = torch.stack([red, torch.zeros_like(red), blue], -1).exp()
-    matrix = spectrum_to_srgb(light, curves, camera.observer, gain)
-    capture = Capture(
-        lot["light"], lot["temperature"], _coefficients(curves, camera), lot["white_balance"]
-    )
-    return matrix, capture
+    matrix = spectrum_to_srgb(spectrum, curves, model.observer, gain)
+    coefficients = _project(curves, model)
+    return matrix, Capture(light.mixture, light.temperature, coefficients, camera.white_balance)
 
 
-def _coefficients(
-    curves: Float[Tensor, "batch wavelength 3"], camera: SpectralCamera
+def _project(
+    curves: Float[Tensor, "batch wavelength 3"], model: SpectralCamera
 ) -> Float[Tensor, "batch components"]:
-    basis = camera.basis.flatten(1)
-    return (curves - camera.mean).flatten(1) @ (basis / (basis**2).sum(1, keepdim=True)).T
+    basis = model.basis.flatten(1)
+    return (curves - model.mean).flatten(1) @ (basis / (basis**2).sum(1, keepdim=True)).T
 
 
-def photographed(lot: dict[str, Tensor], linear: Image) -> Image:
-    """Display sRGB of linear light: lens, tone curve, noise, compression, eight bits."""
-    sigma = (lot["blur"] * linear.shape[-1] / 192)[:, None].expand(-1, 2)
-    display = toned(lot, gaussian_blur2d(linear.clamp_min(0), 7, sigma))
-    spread = column(lot["noise"][:, 0]) + column(lot["noise"][:, 1]) * (1 - display)
-    noisy = (display + spread * lot["grain"]).clamp(0, 1)
-    return (_compressed(noisy, lot["quality"]) * 255).round() / 255
+def take_photograph(camera: CameraParameters, linear: Image) -> Image:
+    """Turn linear light into a photograph: lens blur, tone curve, noise, JPEG, eight bits.
+
+    Args:
+        camera: what each picture's camera does.
+        linear: linear sRGB, 0 or more.
+
+    Returns:
+        Display sRGB in [0, 1].
+    """
+    sigma = (camera.blur * linear.shape[-1] / 192)[:, None].expand(-1, 2)
+    display = apply_tone_curve(camera.tone, gaussian_blur2d(linear.clamp_min(0), 7, sigma))
+    white, dark = (expand_scalar(part) for part in camera.noise.unbind(1))
+    spread = white + dark * (1 - display)
+    noisy = (display + spread * camera.grain).clamp(0, 1)
+    return (_compress(noisy, camera.quality) * 255).round() / 255
 
 
-def toned(lot: dict[str, Tensor], linear: Image) -> Image:
-    """Display sRGB of linear light by a camera's tone curve."""
-    contrast, bend = (column(part) for part in lot["tone"].unbind(1))
-    display = to_display(PIVOT * (linear / PIVOT + 1e-6) ** contrast.exp())
+def apply_tone_curve(tone: Float[Tensor, "batch 2"], linear: Image) -> Image:
+    """Turn linear light into display sRGB by a camera's tone curve.
+
+    Args:
+        tone: log contrast, and bend of the curve.
+        linear: linear sRGB, 0 or more.
+
+    Returns:
+        Display sRGB in [0, 1].
+    """
+    contrast, bend = (expand_scalar(part) for part in tone.unbind(1))
+    display = to_display(_PIVOT * (linear / _PIVOT + 1e-6) ** contrast.exp())
     return (display + bend * display * (1 - display) * (2 * display - 1)).clamp(0, 1)
 
 
-def _compressed(display: Image, quality: Float[Tensor, "batch"]) -> Image:
-    some = quality.nonzero()[:, 0]
-    if not len(some):
+def _compress(display: Image, quality: Float[Tensor, "batch"]) -> Image:
+    chosen = quality.nonzero()[:, 0]
+    if not len(chosen):
         return display
     pad = [-side % 16 for side in display.shape[:1:-1]]
-    wide = torch.nn.functional.pad(display[some], (0, pad[0], 0, pad[1]), mode="replicate")
-    coded = jpeg_codec_differentiable(wide, quality[some])
+    padded = torch.nn.functional.pad(display[chosen], (0, pad[0], 0, pad[1]), mode="replicate")
+    coded = jpeg_codec_differentiable(padded, quality[chosen])
     coded = coded[..., : display.shape[-2], : display.shape[-1]].clamp(0, 1)
-    return display.index_copy(0, some, coded.to(display))
+    return display.index_copy(0, chosen, coded.to(display))

@@ -1,13 +1,24 @@
-"""Small steps shared by what paints the twin's pictures."""
+"""Small tensor functions that the synthetic renderer shares."""
 
+from jaxtyping import Float
 from torch import Tensor
 
 
-def column(value: Tensor) -> Tensor:
-    """A number per picture as [batch, 1, 1, 1]."""
+def expand_scalar(value: Float[Tensor, "batch"]) -> Float[Tensor, "batch 1 1 1"]:
+    """Give a number per picture the axes of an image."""
     return value[:, None, None, None]
 
 
+def expand_colour(value: Float[Tensor, "batch 3"]) -> Float[Tensor, "batch 3 1 1"]:
+    """Give a colour per picture the axes of an image."""
+    return value[:, :, None, None]
+
+
 def soft_step(value: Tensor, width: float) -> Tensor:
-    """0 well below zero, 1 well above, over about `width`."""
+    """Step from 0 to 1 where the value changes sign, over about `width`."""
     return (value / width * 2).sigmoid()
+
+
+def normalise(vectors: Float[Tensor, "batch 3 *shape"]) -> Float[Tensor, "batch 3 *shape"]:
+    """Divide vectors along axis 1 by their length; many times faster on a CPU than F.normalize."""
+    return vectors * (vectors**2).sum(1, keepdim=True).rsqrt()

@@ -1,12 +1,16 @@
-"""Small synthetic heads of both kinds."""
+"""Small synthetic heads of both kinds, and small scenes."""
 
 from pathlib import Path
 
 import numpy as np
 import pytest
+from torch.utils.data import default_collate
 
-from train.synthetic.heads import Head, ict_head, procedural_head
-from train.synthetic.ict_model import IctHead, load_ict_head
+from train.synthetic.faces import SyntheticFaces, SyntheticScenes
+from train.synthetic.heads import make_ict_head, make_procedural_head
+from train.synthetic.ict_model import IctModel, read_ict_model
+from train.synthetic.labelled_mesh import LabelledMesh
+from train.synthetic.scene import SceneParameters
 
 
 @pytest.fixture(scope="session")
@@ -18,15 +22,31 @@ def ict_file(shared_data: Path) -> Path:
 
 
 @pytest.fixture(scope="session")
-def ict_model(ict_file: Path) -> IctHead:
-    return load_ict_head(ict_file)
+def ict_model(ict_file: Path) -> IctModel:
+    return read_ict_model(ict_file)
 
 
 @pytest.fixture(scope="session")
-def head() -> Head:
-    return procedural_head(np.random.default_rng(6))
+def head() -> LabelledMesh:
+    return make_procedural_head(np.random.default_rng(6))
 
 
 @pytest.fixture(scope="session")
-def ict(ict_model: IctHead) -> Head:
-    return ict_head(ict_model, np.random.default_rng(1))
+def ict(ict_model: IctModel) -> LabelledMesh:
+    return make_ict_head(ict_model, np.random.default_rng(1))
+
+
+@pytest.fixture(scope="session")
+def data(casts: Path) -> SyntheticFaces:
+    data = SyntheticFaces(size=32, heads=2, val_heads=1, test_heads=1, geometry=str(casts))
+    for stage in ("fit", "test"):
+        data.setup(stage)
+    return data
+
+
+@pytest.fixture(scope="session")
+def scene(data: SyntheticFaces) -> SceneParameters:
+    """A batch of six scenes."""
+    scenes = SyntheticScenes(data.buffers["train"], "train", 6, seed=3)
+    batch: SceneParameters = default_collate([scenes[index] for index in range(6)])
+    return batch

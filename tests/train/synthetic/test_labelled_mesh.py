@@ -4,24 +4,31 @@ import numpy as np
 import pytest
 
 from skinnet.mesh._topology import boundary
-from train.synthetic.labelled_mesh import Part, clipped, joined, mirrored, part, sheet
+from train.synthetic.labelled_mesh import (
+    LabelledMesh,
+    clip,
+    join,
+    label_mesh,
+    mirror,
+    triangulate_grid,
+)
 from train.synthetic.labels import EYE, SKIN
 
 
 @pytest.fixture
-def square() -> Part:
+def square() -> LabelledMesh:
     x, y = np.meshgrid(np.linspace(-1, 1, 8), np.linspace(1, -1, 8))
     points = np.stack([x, y, 0 * x], -1).reshape(-1, 3)
-    return part(points, sheet(8, 8), SKIN, points[:, :2] * 2)
+    return label_mesh(points, triangulate_grid(8, 8), SKIN, points[:, :2] * 2)
 
 
-def test_a_sheet_faces_the_viewer(square: Part) -> None:
+def test_a_grid_faces_the_viewer(square: LabelledMesh) -> None:
     assert (_areas(square)[:, 2] > 0).all()
 
 
-def test_a_cut_keeps_area_chart_and_orientation(square: Part) -> None:
+def test_a_cut_keeps_area_chart_and_orientation(square: LabelledMesh) -> None:
     value = square.vertices[:, 0] + 0.3 * square.vertices[:, 1] - 0.123
-    right, left = clipped(square, value), clipped(square, -value, EYE)
+    right, left = clip(square, value), clip(square, -value, EYE)
     assert _areas(right)[:, 2].sum() + _areas(left)[:, 2].sum() == pytest.approx(8)
     assert (_areas(right)[:, 2] > -1e-12).all()
     np.testing.assert_allclose(right.chart, 2 * right.vertices[:, :2], atol=1e-12)
@@ -29,8 +36,8 @@ def test_a_cut_keeps_area_chart_and_orientation(square: Part) -> None:
     assert (right.vertices @ [1, 0.3, 0] > 0.123 - 1e-12).all()
 
 
-def test_a_cut_leaves_no_gaps(square: Part) -> None:
-    cut = clipped(square, 0.6 - np.hypot(*square.vertices[:, :2].T))
+def test_a_cut_leaves_no_gaps(square: LabelledMesh) -> None:
+    cut = clip(square, 0.6 - np.hypot(*square.vertices[:, :2].T))
     rim = cut.triangles[boundary(cut.triangles).any(1)]
     assert np.hypot(*cut.vertices[rim].reshape(-1, 3)[:, :2].T).max() < 0.7
     assert len(cut.vertices) - len(cut.triangles) * 3 / 2 - boundary(cut.triangles).sum() / 2 + len(
@@ -38,12 +45,12 @@ def test_a_cut_leaves_no_gaps(square: Part) -> None:
     ) == pytest.approx(1)
 
 
-def test_a_mirror_image_faces_the_same_way(square: Part) -> None:
-    both = joined([square, mirrored(square)])
+def test_a_mirror_image_faces_the_same_way(square: LabelledMesh) -> None:
+    both = join([square, mirror(square)])
     assert (_areas(both)[:, 2] > 0).all()
     assert len(both.vertices) == 2 * len(square.vertices)
 
 
-def _areas(whole: Part) -> np.ndarray:
+def _areas(whole: LabelledMesh) -> np.ndarray:
     a, b, c = np.moveaxis(whole.vertices[whole.triangles], 1, 0)
     return np.cross(b - a, c - a)

@@ -1,0 +1,101 @@
+"""Colours of all that is not skin: eyes, teeth, hair, glasses, clothes and the wall."""
+
+import torch
+import torch.nn.functional as F
+from jaxtyping import Float
+from torch import Tensor
+
+from train.synthetic.face_painting import resize_to_chart
+from train.synthetic.labels import CLOTH, EYE, GLASSES, HAIR, MOUTH, SKIN, TEETH
+from train.synthetic.scene import (
+    FeatureParameters,
+    HairParameters,
+    SceneParameters,
+    SurroundingsParameters,
+)
+from train.synthetic.tensors import expand_colour, expand_scalar, soft_step
+
+OIL = torch.zeros(8)
+"""Gloss of each label but skin, relative to oily skin."""
+OIL[EYE], OIL[TEETH], OIL[MOUTH], OIL[GLASSES], OIL[HAIR] = 1.5, 1.0, 0.5, 1.5, 0.3
+
+_Image = Float[Tensor, "batch 3 height width"]
+_Label = Float[Tensor, "batch 1 height width"]
+_Place = Float[Tensor, "batch 2 height width"]
+
+
+def colour_materials(
+    scene: SceneParameters, label: _Label, place: _Place, cover_colour: _Image
+) -> _Image:
+    """Colour every pixel by its label.
+
+    Args:
+        scene: a batch.
+        label: labels of `train.synthetic.labels`.
+        place: places on the labels' charts.
+        cover_colour: linear sRGB of what covers the skin.
+
+    Returns:
+        Linear sRGB under white light; on skin it is `cover_colour`.
+    """
+    features = scene.face.features
+    wall = _colour_wall(scene.surroundings, label.shape[-2:])
+    colour = torch.where(label == SKIN, cover_colour, wall)
+    materials = {
+        EYE: _colour_eye(features, place),
+        TEETH: expand_colour(features.teeth),
+        MOUTH: place.new_tensor([0.14, 0.03, 0.03])[None, :, None, None],
+        HAIR: _colour_hair(scene.face.hair, place),
+        GLASSES: expand_colour(features.glasses),
+        CLOTH: _colour_clothes(scene.surroundings, place),
+    }
+    for number, value in materials.items():
+        colour = torch.where(label == number, value, colour)
+    return colour
+
+
+def _colour_wall(surroundings: SurroundingsParameters, size: torch.Size) -> _Image:
+    wall = F.interpolate(surroundings.wall, size, mode="bicubic", align_corners=True)
+    clutter = (
+        F.interpolate(one, size, mode="bilinear")
+        for one in (surroundings.coarse_clutter, surroundings.fine_clutter)
+    )
+    light = expand_scalar(surroundings.wall_light)
+    return (wall * sum(clutter).exp() * light).clamp(0.001, 1.5)
+
+
+def _colour_eye(features: FeatureParameters, place: _Place) -> _Image:
+    """Sclera, iris with a dark rim, and pupil, by the distance from the gaze's axis."""
+    radius = place.norm(dim=1, keepdim=True)
+    inside, pupil = soft_step(1 - radius, 0.12), soft_step(0.38 - radius, 0.12)
+    iris = expand_colour(features.iris) * (0.35 + 0.65 * soft_step(0.85 - radius, 0.2))
+    colour = expand_colour(features.sclera) * (1 - inside) + iris * inside
+    eye: _Image = colour * (1 - pupil) + 0.008 * pupil
+    return eye
+
+
+def _colour_hair(hair: HairParameters, place: _Place) -> _Image:
+    grid = torch.stack([place[:, 0] / torch.pi, -place[:, 1] / 2], -1)
+    strands = F.grid_sample(
+        resize_to_chart(hair.strands), grid, align_corners=True, padding_mode="reflection"
+    )
+    return expand_colour(hair.colour) * strands.exp()
+
+
+def _colour_clothes(surroundings: SurroundingsParameters, place: _Place) -> _Image:
+    """A jacket over a shirt, with or without a tie, all in one pattern."""
+    x, y = place.unbind(1)
+    pattern = F.grid_sample(
+        surroundings.pattern,
+        torch.stack([x / 2, y / 2], -1),
+        align_corners=True,
+        padding_mode="reflection",
+    )
+    opening = soft_step(0.30 + 0.35 * (y + 1.2) - x.abs(), 0.03)[:, None]
+    tie = soft_step(0.07 - 0.05 * (y + 1.2) - x.abs(), 0.02)[:, None]
+    tie = tie * expand_scalar(surroundings.tie)
+    colour = expand_colour(surroundings.jacket) * (1 - opening)
+    colour = colour + expand_colour(surroundings.shirt) * opening
+    colour = colour * (1 - tie) + expand_colour(surroundings.tie_colour) * tie
+    clothes: _Image = (colour * pattern.exp()).clamp(0.003, 1)
+    return clothes

@@ -1,0 +1,222 @@
+"""Everything that the synthetic renderer needs to know of one picture, or of a batch.
+
+All values are tensors. A sample has no batch axis; torch's default collate puts one in front.
+"""
+
+from collections.abc import Callable
+from typing import NamedTuple, TypeVar
+
+from jaxtyping import Float, Float16, Int8, Int64, UInt8
+from torch import Tensor
+
+from skinnet.physics import LIGHTS
+
+CHART_SIZE = (168, 208)
+"""Rows and columns of the charts that faces are painted on."""
+
+REGIONS = 6
+MOLES = 6
+LAMPS = 3
+MIXTURE = len(LIGHTS)
+
+
+class HeadBuffers(NamedTuple):
+    """The surface of a head under each pixel, without any light.
+
+    `label` is one of `train.synthetic.labels`. `normal` is in the camera's axes (right, up, towards
+    it) times 127. `chart` is the place on the label's chart. `sky_visibility` is the share of the
+    cosine-weighted sky that nothing hides, times 255. Bit k of `visibility_mask` is set where
+    nothing stands between the surface and `LIGHT_DIRECTIONS[k]`; it is not set where the surface
+    looks away. All bits of the background are set.
+    """
+
+    label: UInt8[Tensor, "*batch height width"]
+    normal: Int8[Tensor, "*batch height width 3"]
+    chart: Float16[Tensor, "*batch height width 2"]
+    sky_visibility: UInt8[Tensor, "*batch height width"]
+    visibility_mask: Int64[Tensor, "*batch height width"]
+
+
+class PigmentParameters(NamedTuple):
+    """How one pigment is spread over a face.
+
+    `fraction` is a volume fraction; all other fields are natural logarithms of factors on it. They
+    belong to the six regions of `train.synthetic.face_painting`, to noise of three octaves, and to
+    `model_skin`, the chart of a skin of a hybrid model, which is 0 without one.
+    """
+
+    fraction: Float[Tensor, "*batch"]
+    regions: Float[Tensor, "*batch {REGIONS}"]
+    coarse: Float[Tensor, "*batch 1 8 10"]
+    middle: Float[Tensor, "*batch 1 24 30"]
+    fine: Float[Tensor, "*batch 1 84 104"]
+    model_skin: Float[Tensor, "*batch 1 rows columns"]
+
+
+class GlossParameters(NamedTuple):
+    """How much oil lies on the skin, relative to a median face, and the roughness of its lobe."""
+
+    oil: Float[Tensor, "*batch"]
+    roughness: Float[Tensor, "*batch"]
+
+
+class SkinParameters(NamedTuple):
+    """The skin itself.
+
+    `has_model_skin` is 1 where the pigments include a skin of a hybrid model, otherwise 0. `bump`
+    holds the slopes of the skin's relief to the right and upwards.
+    """
+
+    melanin: PigmentParameters
+    hemoglobin: PigmentParameters
+    has_model_skin: Float[Tensor, "*batch"]
+    bump: Float[Tensor, "*batch 2 rows columns"]
+    gloss: GlossParameters
+
+
+class MarkParameters(NamedTuple):
+    """Natural logarithms of factors of melanin (freckles, moles) and hemoglobin (spots, vessels).
+
+    Of each mole: azimuth, elevation, radius and log factor, which is 0 for moles that are absent.
+    """
+
+    freckles: Float[Tensor, "*batch 1 120 150"]
+    spots: Float[Tensor, "*batch 1 60 74"]
+    vessels: Float[Tensor, "*batch 1 56 70"]
+    moles: Float[Tensor, "*batch {MOLES} 4"]
+
+
+class BeardParameters(NamedTuple):
+    """Opacity of beard and stubble, whether the moustache grows too, and noise over the chart."""
+
+    beard: Float[Tensor, "*batch"]
+    moustache: Float[Tensor, "*batch"]
+    stubble: Float[Tensor, "*batch"]
+    grain: Float[Tensor, "*batch 1 rows columns"]
+
+
+class HairParameters(NamedTuple):
+    """Hair of head, brows, lashes and beard, all of one `colour` (linear sRGB).
+
+    `strands` is log brightness around the head; `brow` and `lashes` are opacities; `brow_shape` is
+    what is added to the brow's height, slope and thickness.
+    """
+
+    colour: Float[Tensor, "*batch 3"]
+    strands: Float[Tensor, "*batch 1 16 110"]
+    brow: Float[Tensor, "*batch"]
+    brow_shape: Float[Tensor, "*batch 3"]
+    lashes: Float[Tensor, "*batch"]
+    beard: BeardParameters
+
+
+class FeatureParameters(NamedTuple):
+    """Colours (linear sRGB) of eyes, teeth, glasses and lipstick; `make_up` is its opacity."""
+
+    iris: Float[Tensor, "*batch 3"]
+    sclera: Float[Tensor, "*batch 3"]
+    teeth: Float[Tensor, "*batch 3"]
+    glasses: Float[Tensor, "*batch 3"]
+    make_up: Float[Tensor, "*batch"]
+    lipstick: Float[Tensor, "*batch 3"]
+
+
+class FaceParameters(NamedTuple):
+    """All that is painted on a head."""
+
+    skin: SkinParameters
+    marks: MarkParameters
+    hair: HairParameters
+    features: FeatureParameters
+
+
+class SurroundingsParameters(NamedTuple):
+    """The wall behind the head, and clothes.
+
+    Colours are linear sRGB, `wall` at 3 x 3 places. `coarse_clutter`, `fine_clutter` and `pattern`
+    are log brightness of the wall and of the clothes. `tie` is 1 for a tie, otherwise 0.
+    """
+
+    wall: Float[Tensor, "*batch 3 3 3"]
+    coarse_clutter: Float[Tensor, "*batch 3 12 12"]
+    fine_clutter: Float[Tensor, "*batch 3 40 40"]
+    wall_light: Float[Tensor, "*batch"]
+    jacket: Float[Tensor, "*batch 3"]
+    shirt: Float[Tensor, "*batch 3"]
+    pattern: Float[Tensor, "*batch 3 40 40"]
+    tie: Float[Tensor, "*batch"]
+    tie_colour: Float[Tensor, "*batch 3"]
+
+
+class LightParameters(NamedTuple):
+    """A sky, some lamps, and the one spectrum of all of them.
+
+    `sky` holds coefficients of nine spherical harmonics, `lamps` unit directions in the camera's
+    axes, `strength` their irradiance, `softness` the half widths of the lamps in radians. `mixture`
+    holds weights of the light sources `LIGHTS`, `temperature` that of daylight in kelvin.
+    """
+
+    sky: Float[Tensor, "*batch 9"]
+    lamps: Float[Tensor, "*batch {LAMPS} 3"]
+    strength: Float[Tensor, "*batch {LAMPS}"]
+    softness: Float[Tensor, "*batch {LAMPS}"]
+    mixture: Float[Tensor, "*batch {MIXTURE}"]
+    temperature: Float[Tensor, "*batch"]
+
+
+class CameraParameters(NamedTuple):
+    """A camera from its sensor to the file.
+
+    `sensor` in [0, 1] picks one of the measured cameras. `white_balance` is the log error of red
+    and blue. `exposure` is a factor, `metering` the share in [0, 1] of the correction that a meter
+    on the skin would make. `tone` holds log contrast and bend of the tone curve. `blur` is the
+    standard deviation in pixels of a picture 192 pixels wide. `noise` holds standard deviations in
+    white and added towards black, `grain` the standard normal field that they scale. `quality` is
+    that of JPEG, 0 for no compression. `mirror` is 1 for pictures that are mirrored.
+    """
+
+    sensor: Float[Tensor, "*batch"]
+    white_balance: Float[Tensor, "*batch 2"]
+    exposure: Float[Tensor, "*batch"]
+    metering: Float[Tensor, "*batch"]
+    tone: Float[Tensor, "*batch 2"]
+    blur: Float[Tensor, "*batch"]
+    grain: Float[Tensor, "*batch 3 height width"]
+    noise: Float[Tensor, "*batch 2"]
+    quality: Float[Tensor, "*batch"]
+    mirror: Float[Tensor, "*batch"]
+
+
+class SceneParameters(NamedTuple):
+    """A head and all that is sampled for one picture of it."""
+
+    head: HeadBuffers
+    face: FaceParameters
+    surroundings: SurroundingsParameters
+    light: LightParameters
+    camera: CameraParameters
+
+
+Record = TypeVar("Record", bound=NamedTuple)
+
+
+def map_tensors(function: Callable[[Tensor], Tensor], record: Record) -> Record:
+    """Apply a function to every tensor of a record and of the records in it.
+
+    Args:
+        function: of one tensor.
+        record: any record of this module.
+
+    Returns:
+        A record of the same type.
+
+    Example:
+        >>> import torch
+        >>> gloss = GlossParameters(torch.tensor(1.0), torch.tensor(0.4))
+        >>> map_tensors(lambda value: 2 * value, gloss).oil
+        tensor(2.)
+    """
+    return record._make(
+        function(value) if isinstance(value, Tensor) else map_tensors(function, value)
+        for value in record
+    )
