@@ -2,11 +2,11 @@
 
     python -m benchmarks.full_resolution [--json]
 
-The portrait is scikit-image's astronaut, enlarged, with grain: `portrait` all of it, `close_up` a
-crop that the head fills, of which all pixels are looked at. Each figure is from a process of its
-own: the least seconds of two runs, model files open, and the highest resident memory.
-`cpu_seconds` add up all threads; they say more than seconds do where other programs run.
-`from_jpeg` begins with the file's decoding.
+The photographs are scikit-image's astronaut, enlarged, with grain: `portrait` is all of it, and
+`close_up` a crop that the head fills, of which all pixels are decomposed. Each figure comes from
+its own process: the shorter of two runs with open model files, and the highest resident memory.
+`cpu_seconds` are the sum over threads, which other programs disturb less than seconds. `from_jpeg`
+includes the decoding of the file.
 """
 
 import json
@@ -36,11 +36,11 @@ PICTURES = {
 def measure() -> dict[str, Any]:
     """Seconds and MiB of each picture at full resolution, of the network alone, and their ratio."""
     with tempfile.TemporaryDirectory() as folder:
-        return {name: _measured(Path(folder), name) for name in PICTURES}
+        return {name: _measure_picture(Path(folder), name) for name in PICTURES}
 
 
-def enlarged(name: str, seed: int = 0) -> NDArray[np.uint8]:
-    """A picture of `PICTURES` with a grain of two levels of 8 bits, uint8 sRGB [H, W, 3]."""
+def enlarge_astronaut(name: str, seed: int = 0) -> NDArray[np.uint8]:
+    """A picture of `PICTURES`, uint8 sRGB [H, W, 3], with noise of 2 levels' standard deviation."""
     rows, columns, size = PICTURES[name]
     image = Image.fromarray(astronaut()[rows, columns])
     smooth = np.asarray(image.resize(size, Image.Resampling.BICUBIC), np.float32)
@@ -48,26 +48,26 @@ def enlarged(name: str, seed: int = 0) -> NDArray[np.uint8]:
     return np.rint(smooth + 2 * grain).clip(0, 255).astype(np.uint8)
 
 
-def _measured(folder: Path, name: str) -> dict[str, Any]:
-    photo = enlarged(name)
+def _measure_picture(folder: Path, name: str) -> dict[str, Any]:
+    photo = enlarge_astronaut(name)
     np.save(folder / f"{name}.npy", photo)
     Image.fromarray(photo).save(folder / f"{name}.jpg", quality=92)
-    full = _in_process(folder / f"{name}.npy", detail=True)
-    soft = _in_process(folder / f"{name}.npy", detail=False)
+    full = _run_process(folder / f"{name}.npy", detail=True)
+    soft = _run_process(folder / f"{name}.npy", detail=False)
     return {
         "megapixels": photo.shape[0] * photo.shape[1] / 1e6,
         "full_resolution": full,
-        "from_jpeg": _in_process(folder / f"{name}.jpg", detail=True),
+        "from_jpeg": _run_process(folder / f"{name}.jpg", detail=True),
         "network_alone": soft,
         "ratio": full["cpu_seconds"] / soft["cpu_seconds"],
     }
 
 
-def _in_process(path: Path, detail: bool) -> dict[str, float]:
+def _run_process(path: Path, detail: bool) -> dict[str, float]:
     command = [sys.executable, "-m", __spec__.name, str(path), str(int(detail))]
     done = subprocess.run(command, check=True, capture_output=True, text=True)
-    found: dict[str, float] = json.loads(done.stdout)
-    return found
+    figures: dict[str, float] = json.loads(done.stdout)
+    return figures
 
 
 def _decompose(path: Path, detail: bool) -> dict[str, float]:

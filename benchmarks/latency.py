@@ -1,9 +1,8 @@
-"""How long one photograph takes: the shipped encoder beside a BioFaceNet-shaped network, and the
-command line.
+"""Time for one photograph: the shipped encoder, a network of BioFaceNet's shape, the command line.
 
     python -m benchmarks.latency [--json]
 
-Milliseconds are the least of several runs in one process; the ratio is what counts.
+Milliseconds are the shortest of several runs in one process. The ratio matters, not the times.
 """
 
 import subprocess
@@ -39,13 +38,17 @@ def measure() -> dict[str, Any]:
         for size in RUNS:
             for threads in THREADS:
                 for name, path in both.items():
-                    times[name][str(size)][str(threads)] = run_ms(path, size, threads)
+                    times[name][str(size)][str(threads)] = time_run_ms(path, size, threads)
         ratios = {
             f"speedup_{size}": times["biofacenet"][str(size)]["1"]
             / times["encoder"][str(size)]["1"]
             for size in RUNS
         }
-        return {**ratios, **{f"{name}_ms": value for name, value in times.items()}, **commands()}
+        return {
+            **ratios,
+            **{f"{name}_ms": value for name, value in times.items()},
+            **time_commands(),
+        }
 
 
 def export_rival(path: Path) -> None:
@@ -66,37 +69,37 @@ def export_rival(path: Path) -> None:
     program.save(path, external_data=False)
 
 
-def run_ms(path: Path, size: int, threads: int) -> float:
-    """The least time of one run on a noise photograph of that size."""
+def time_run_ms(path: Path, size: int, threads: int) -> float:
+    """The shortest time of one run on a photograph of noise, in milliseconds."""
     options = onnxruntime.SessionOptions()
     options.intra_op_num_threads = threads
     session = onnxruntime.InferenceSession(path, options, providers=["CPUExecutionProvider"])
     entry = session.get_inputs()[0]
-    lot = np.random.default_rng(0)
-    feed = {entry.name: lot.integers(0, 256, (1, size, size, 3), np.uint8)}
+    rng = np.random.default_rng(0)
+    feed = {entry.name: rng.integers(0, 256, (1, size, size, 3), np.uint8)}
     if "float" in entry.type:
-        feed = {entry.name: lot.random((1, 3, size, size), np.float32)}
-    return min(_timed(lambda: session.run(None, feed)) for _ in range(RUNS[size])) * 1e3
+        feed = {entry.name: rng.random((1, 3, size, size), np.float32)}
+    return min(_time(lambda: session.run(None, feed)) for _ in range(RUNS[size])) * 1e3
 
 
-def commands() -> dict[str, float]:
+def time_commands() -> dict[str, float]:
     """Seconds of `skinnet --help` and of `skinnet predict` on one 512 x 512 photograph."""
     with tempfile.TemporaryDirectory() as folder:
         photograph = Path(folder) / "astronaut.png"
         Image.fromarray(astronaut()).save(photograph)
         predict = ["predict", str(photograph), "-o", folder]
         return {
-            "cli_help_s": min(_timed(lambda: _command("--help")) for _ in range(5)),
-            "cli_predict_s": min(_timed(lambda: _command(*predict)) for _ in range(3)),
+            "cli_help_s": min(_time(lambda: _run_command("--help")) for _ in range(5)),
+            "cli_predict_s": min(_time(lambda: _run_command(*predict)) for _ in range(3)),
         }
 
 
-def _command(*arguments: str) -> None:
+def _run_command(*arguments: str) -> None:
     command = [str(Path(sys.executable).with_name("skinnet")), *arguments]
     subprocess.run(command, check=True, capture_output=True)
 
 
-def _timed(action: Any) -> float:
+def _time(action: Any) -> float:
     started = time.perf_counter()
     action()
     return time.perf_counter() - started
