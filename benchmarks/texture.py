@@ -1,10 +1,11 @@
-"""How long a texture space takes to make and to fill, and how exact it is.
+"""Time and accuracy of the texture space: embedding, raster, warp, closest points.
 
-`python -m benchmarks.texture [--json]`. A face-like sheet of 53,490 vertices and 106,000 triangles
-with holes for eyes and mouth, its quads all split the same way, is embedded and a picture warped
-into it at 1024 x 1024. Beside it scikit-image's piecewise affine warp at a mesh small enough for
-it, and trimesh's closest points and repair of orientation on a surface with triangles of very
-different sizes. Times are the least of several runs in one process.
+`python -m benchmarks.texture [--json]`. A mesh of 53,490 vertices and 106,000 triangles in the
+shape of a face, with holes for eyes and mouth and quads that are all split the same way, is
+embedded, and a picture is warped into it at 1024 x 1024. The warp is compared with scikit-image's
+piecewise affine warp on a mesh small enough for it, closest points and repair of orientation with
+trimesh's on a surface with triangles of very different sizes. Times are the least of several runs
+in one process.
 """
 
 import time
@@ -39,13 +40,13 @@ QUERIES = 5000
 """Points near that surface whose closest points on it are looked for."""
 
 HOLES = ((-0.4, 0.25, 0.16, 0.06), (0.4, 0.25, 0.16, 0.06), (0.0, -0.45, 0.22, 0.04))
-"""Middle and half axes of eyes and mouth, in half widths and half heights of the sheet."""
+"""Centre and half axes of eyes and mouth, in half widths and half heights of the mesh."""
 
 
-def sheet(
+def make_face_mesh(
     columns: int, rows: int
 ) -> tuple[Float[np.ndarray, "vertices 3"], Int[np.ndarray, "triangles 3"]]:
-    """A bulging sheet with a nose and `HOLES`, mirror-symmetric but for the quads' diagonals."""
+    """Make a curved patch with a nose and `HOLES`, symmetric except for the quads' diagonals."""
     y, x = np.meshgrid(np.linspace(1, -1, rows), np.linspace(-1, 1, columns), indexing="ij")
     z = np.sqrt(2.5 - x**2 - y**2) + 0.35 * np.exp(-(x**2) / 0.02 - y**2 / 0.06)
     vertices = np.stack([80 * x, 110 * y, 90 * z], -1).reshape(-1, 3)
@@ -61,34 +62,34 @@ def sheet(
     return vertices[used], np.concatenate([quads[:, :3], quads[:, [0, 2, 3]]])
 
 
-def scattered(
+def scatter_points(
     points: int, size: int, seed: int = 0
 ) -> tuple[Float[np.ndarray, "points 2"], Float[np.ndarray, "points 2"]]:
-    """Places (x, y) in a map of that size, its corners among them, and in a source near them."""
-    generator = np.random.default_rng(seed)
-    inner = generator.uniform(0.05, 0.95, (points - 4, 2))
+    """Sample places (x, y) in a square picture, near its corners too, and nearby source places."""
+    rng = np.random.default_rng(seed)
+    inner = rng.uniform(0.05, 0.95, (points - 4, 2))
     places = np.concatenate([[[0.02, 0.01], [0.98, 0.03], [0.99, 0.97], [0.01, 0.98]], inner])
     moved = places + 0.03 * np.sin(5 * places[:, ::-1])
     return places * (size - 1), moved.clip(0, 1) * (size - 1)
 
 
-def by_skimage(
+def warp_with_skimage(
     places: Float[np.ndarray, "points 2"],
     source: Float[np.ndarray, "points 2"],
     picture: Float[np.ndarray, "size size 3"],
 ) -> Float[np.ndarray, "size size 3"]:
-    """scikit-image's warp of a picture whose points at `source` are to come to `places`."""
+    """Warp a picture with scikit-image so that its points at `source` come to `places`."""
     transform = PiecewiseAffineTransform.from_estimate(places, source)
     warped: Float[np.ndarray, "size size 3"] = warp(picture, transform, order=1, mode="edge")
     return warped
 
 
-def by_ours(
+def warp_with_skinnet(
     places: Float[np.ndarray, "points 2"],
     source: Float[np.ndarray, "points 2"],
     picture: Float[np.ndarray, "size size 3"],
 ) -> tuple[Float[np.ndarray, "size size 3"], Any]:
-    """The same with the same triangles and one sample a texel; the mask is True inside them."""
+    """Warp the same with the same triangles and one sample per texel."""
     size = len(picture)
     triangles = Delaunay(places).simplices.astype(np.int64)
     flip = np.array([1, -1]), np.array([0.5, size - 0.5])
@@ -98,22 +99,22 @@ def by_ours(
     return warp_texture(space, coordinates[triangles], everywhere, picture, max_samples=1)
 
 
-def against_skimage(points: int, size: int) -> Results:
-    """Largest difference inside the mesh, and how many times longer scikit-image takes."""
-    places, source = scattered(points, size)
+def compare_with_skimage(points: int, size: int) -> Results:
+    """Compare with scikit-image: largest difference inside the mesh, and ratio of times."""
+    places, source = scatter_points(points, size)
     picture = np.random.default_rng(1).random((size, size, 3))
-    ours_s, (image, mask) = least(lambda: by_ours(places, source, picture))
-    theirs_s, theirs = least(lambda: by_skimage(places, source, picture), runs=2)
+    ours_s, (image, mask) = time_least(lambda: warp_with_skinnet(places, source, picture))
+    theirs_s, theirs = time_least(lambda: warp_with_skimage(places, source, picture), runs=2)
     return {
         "warp_vs_skimage_max_difference": float(np.abs(image - theirs)[mask].max()),
         "warp_vs_skimage_speedup": theirs_s / ours_s,
     }
 
 
-def uneven_surface(
+def make_uneven_mesh(
     count: int, seed: int = 0
 ) -> tuple[Float[np.ndarray, "vertices 3"], Int[np.ndarray, "triangles 3"]]:
-    """A bulge that faces +z, of size 2, with triangles that are small in the middle."""
+    """Make a curved patch that faces +z, of size 2, with small triangles in the middle."""
     place = np.random.default_rng(seed).uniform(-1, 1, (count, 2)) ** 3
     vertices = np.column_stack([place, np.sqrt(2.5 - (place**2).sum(1))])
     triangles = Delaunay(place).simplices.astype(np.int64)
@@ -121,14 +122,14 @@ def uneven_surface(
     return repaired.vertices, repaired.triangles
 
 
-def against_trimesh(count: int, queries: int) -> Results:
-    """Closest points, exact and by centroids, and orientation when a third of faces is flipped."""
-    vertices, triangles = uneven_surface(count)
+def compare_with_trimesh(count: int, queries: int) -> Results:
+    """Compare closest points, exact and by centroids, and orientation when faces are flipped."""
+    vertices, triangles = make_uneven_mesh(count)
     rng = np.random.default_rng(1)
     points = vertices[rng.integers(0, len(vertices), queries)] + rng.normal(0, 0.02, (queries, 3))
     corners = vertices[triangles]
 
-    def by_centroids() -> Float[np.ndarray, "queries"]:
+    def measure_by_centroids() -> Float[np.ndarray, "queries"]:
         nearest = cKDTree(corners.mean(1)).query(points, 8)[1]
         repeated = np.repeat(points, 8, 0)
         away = closest_point(corners[nearest.ravel()], repeated) - repeated
@@ -136,27 +137,29 @@ def against_trimesh(count: int, queries: int) -> Results:
 
     flipped = np.where(rng.random((len(triangles), 1)) < 0.3, triangles[:, ::-1], triangles)
 
-    def by_trimesh(faces: Int[np.ndarray, "triangles 3"]) -> Int[np.ndarray, "triangles 3"]:
+    def orient_with_trimesh(
+        faces: Int[np.ndarray, "triangles 3"],
+    ) -> Int[np.ndarray, "triangles 3"]:
         mesh = Trimesh(vertices, faces, process=False)
         fix_normals(mesh, multibody=False)
         return np.asarray(mesh.faces)
 
-    closest_s, closest = least(lambda: TriangleTree(vertices, triangles).query(points))
-    centroid_s, distance = least(by_centroids)
-    repair_s, _ = least(lambda: repair_mesh(Mesh(vertices, flipped)))
-    trimesh_s, _ = least(lambda: by_trimesh(flipped), runs=2)
+    closest_s, closest = time_least(lambda: TriangleTree(vertices, triangles).query(points))
+    centroid_s, distance = time_least(measure_by_centroids)
+    repair_s, _ = time_least(lambda: repair_mesh(Mesh(vertices, flipped)))
+    trimesh_s, _ = time_least(lambda: orient_with_trimesh(flipped), runs=2)
     return {
         "closest_s": closest_s,
         "closest_centroid_s": centroid_s,
         "closest_centroid_error": float((distance - closest.distance).max()) / 2,
         "repair_s": repair_s,
         "repair_vs_trimesh_speedup": trimesh_s / repair_s,
-        "trimesh_inside_out": is_inside_out(vertices, by_trimesh(triangles[:, ::-1])),
+        "trimesh_inside_out": is_inside_out(vertices, orient_with_trimesh(triangles[:, ::-1])),
     }
 
 
-def least(action: Callable[[], Any], runs: int = RUNS) -> tuple[float, Any]:
-    """The least time of several runs in seconds, and the last result."""
+def time_least(action: Callable[[], Any], runs: int = RUNS) -> tuple[float, Any]:
+    """Measure the least time of several runs in seconds, and return it with the last result."""
     times = []
     for _ in range(runs):
         start = time.perf_counter()
@@ -172,17 +175,17 @@ def measure(
     small: int = SMALL,
     uneven: int = UNEVEN,
 ) -> Results:
-    """Every figure, by name."""
+    """Measure every figure, by name."""
     rows = int(np.ceil(np.sqrt(vertices * 1.02)))
-    surface, triangles = sheet(rows, rows)
-    mirror_s, mirror = least(lambda: find_mirror_vertices(surface))
-    tutte_s, uv = least(lambda: compute_tutte_embedding(surface, triangles, mirror))
-    raster_s, _ = least(lambda: rasterise(uv[triangles], size))
+    surface, triangles = make_face_mesh(rows, rows)
+    mirror_s, mirror = time_least(lambda: find_mirror_vertices(surface))
+    tutte_s, uv = time_least(lambda: compute_tutte_embedding(surface, triangles, mirror))
+    raster_s, _ = time_least(lambda: rasterise(uv[triangles], size))
     source = 0.5 + surface[:, :2] / [170, 230]
     picture = np.random.default_rng(0).random((size, size, 3), np.float32)
     everywhere = np.ones(len(triangles), bool)
 
-    def filled() -> Any:
+    def warp_picture() -> Any:
         space = TextureSpace(uv, triangles, size)
         return warp_texture(space, source[triangles], everywhere, picture)
 
@@ -194,9 +197,9 @@ def measure(
         "flipped": count_flipped_triangles(uv, triangles),
         "asymmetry": float(np.abs(uv[mirror] - [1, 0] - uv * [-1, 1]).max()),
         "raster_s": raster_s,
-        "warp_s": least(filled)[0],
-        **against_skimage(points, small),
-        **against_trimesh(uneven, QUERIES),
+        "warp_s": time_least(warp_picture)[0],
+        **compare_with_skimage(points, small),
+        **compare_with_trimesh(uneven, QUERIES),
     }
 
 

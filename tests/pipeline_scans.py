@@ -20,8 +20,8 @@ FAST = ("--fit.stages", "[[500, 10, 30.0], [2000, 0, 0.1]]")
 
 def pigments(seed: int, size: int = 64) -> tuple[torch.Tensor, torch.Tensor]:
     """Smooth maps of melanin and hemoglobin over a texture [1, n, n]."""
-    generator = torch.Generator().manual_seed(seed)
-    noise = torch.rand(2, 1, 5, 5, generator=generator)
+    rng = torch.Generator().manual_seed(seed)
+    noise = torch.rand(2, 1, 5, 5, generator=rng)
     smooth = torch.nn.functional.interpolate(noise, (size, size), mode="bicubic")[:, 0].clamp(0, 1)
     base = 0.02 + 0.04 * seed
     return base * (0.7 + 0.6 * smooth[:1]), 0.025 + 0.04 * smooth[1:]
@@ -30,10 +30,10 @@ def pigments(seed: int, size: int = 64) -> tuple[torch.Tensor, torch.Tensor]:
 def write_scan(path: Path, seed: int, scale: float = 1.0) -> None:
     """A textured face with its landmarks, turned a little; `scale` is units a millimetre."""
     model = load_shape_model()
-    draw = np.random.default_rng(seed)
-    alpha = draw.normal(size=len(model.variances)) * np.sqrt(model.variances)
-    turn = Rotation.from_rotvec([0.02, 0.1 * seed, 0.0]).as_matrix()
-    vertices = scale * (model.reconstruct(alpha) @ turn.T + [30, -10, 5])
+    rng = np.random.default_rng(seed)
+    alpha = rng.normal(size=len(model.variances)) * np.sqrt(model.variances)
+    rotation = Rotation.from_rotvec([0.02, 0.1 * seed, 0.0]).as_matrix()
+    vertices = scale * (model.reconstruct(alpha) @ rotation.T + [30, -10, 5])
     f_mel, f_blood = pigments(seed)
     rgb = SkinColour().skin(f_mel.flatten(1), f_blood.flatten(1))[0].unflatten(-1, (64, 64))
     texture = to_uint8(linear_to_srgb(rgb.movedim(0, -1).numpy()))

@@ -14,7 +14,7 @@ def test_texture_reports_its_figures_and_reaches_its_accuracies() -> None:
     assert all(found[name] > 0 for name in times)
 
 
-def test_the_sheet_has_the_size_that_is_asked_for() -> None:
+def test_the_mesh_has_the_size_that_is_asked_for() -> None:
     rows = 234
-    vertices, triangles = texture.sheet(rows, rows)
+    vertices, triangles = texture.make_face_mesh(rows, rows)
     assert len(vertices) >= texture.VERTICES and len(triangles) >= 105_000

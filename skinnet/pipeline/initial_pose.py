@@ -1,4 +1,4 @@
-"""Where the face of a scan is that stands upright and looks along z, without landmarks."""
+"""The pose of an upright face that looks along +z, found without landmarks."""
 
 from itertools import product
 
@@ -18,45 +18,55 @@ from skinnet.shape.model import ShapeModel
 from skinnet.shape.similarity import Similarity
 
 PIXELS = 500
-"""Height and width of the picture in which the face is looked for."""
+"""Height and width of the picture in which the face is detected."""
 
 _LIGHT = np.array([0.3, 0.5, 0.8])
 _SHIFTS, _SIZES = (-0.1, -0.05, 0.0, 0.05, 0.1), (0.9, 1.0, 1.1)
 
 
 def find_initial_pose(model: ShapeModel, scan: Mesh) -> Similarity:
-    """Pose of the mean face by the face that `find_face` sees in pictures of both, from ahead.
+    """Find the pose of the mean face on a scan from face detections in pictures of both.
 
-    Both are drawn as grey plaster, so a texture does not matter. The found place is good to a
-    tenth of a face: of several poses around it, that whose rigid fit comes closest is taken.
-    Raises `NoFaceError` where no face is seen.
+    Both are rendered from the front as grey plaster, so a texture has no influence. The detection
+    is accurate to a tenth of a face. Of several poses around it, the one with the best rigid fit is
+    taken.
+
+    Args:
+        model: The shape model, upright and looking along +z.
+        scan: The scan, upright and looking along +z, in any unit.
+
+    Returns:
+        The pose, from the model's frame and unit to the scan's: the `start` for `register`.
+
+    Raises:
+        NoFaceError: If no face is detected.
     """
     mean = model.build_mesh(np.zeros(0))
-    (own_place, own_width), (place, width) = (_face(mesh) for mesh in (mean, scan))
+    (model_place, model_width), (place, width) = (_locate_face(mesh) for mesh in (mean, scan))
     rigid = FitSettings(kept=0.9, iterations=10)
     stage = IcpStage(model, ScanPoints(scan), rigid, np.zeros(0), 800, 1, 1e3)
-    tried = []
+    candidates = []
     for shift, size in product(_SHIFTS, _SIZES):
-        scale = size * width / own_width
+        scale = size * width / model_width
         lifted = place + np.array([0, shift * width, 0])
-        pose = Similarity(np.eye(3), scale, lifted - scale * own_place)
+        pose = Similarity(np.eye(3), scale, lifted - scale * model_place)
         pose, _, record = stage.run(pose, np.zeros(1))
-        tried.append((record.rms[-1], pose))
-    return min(tried, key=lambda one: one[0])[1]
+        candidates.append((record.rms[-1], pose))
+    return min(candidates, key=lambda one: one[0])[1]
 
 
-def _face(mesh: Mesh) -> tuple[Float[np.ndarray, "3"], float]:
-    """The point of the mesh in the middle of its face, and the width of the detector's box."""
+def _locate_face(mesh: Mesh) -> tuple[Float[np.ndarray, "3"], float]:
+    """Find the point of the mesh in the middle of its face, and the width of the detector's box."""
     low, high = mesh.vertices.min(0), mesh.vertices.max(0)
     scale = PIXELS / (1.1 * float((high - low)[:2].max()))
     eye = np.array([*(low + high)[:2] / 2, high[2] + 1 / scale])
     view = OrthographicView((PIXELS, PIXELS), eye, np.eye(3), scale)
     buffers = trace_geometry(Scene(mesh), view)
-    box = find_face(_plaster(buffers))
+    box = find_face(_render_plaster(buffers))
     if box is None:
         raise NoFaceError(
-            f"{mesh.name} shows no face from ahead; turn it upright with the face along +z, or "
-            "give landmarks."
+            f"{mesh.name} shows no face from the front; rotate it upright with the face along +z, "
+            "or give landmarks."
         )
     column, row = (box.left + box.right) / 2, (box.top + box.bottom) / 2
     width = box.width / scale
@@ -65,7 +75,7 @@ def _face(mesh: Mesh) -> tuple[Float[np.ndarray, "3"], float]:
     return np.array([*middle, buffers.position[near, 2].max()]), width
 
 
-def _plaster(buffers: GeometryBuffers) -> UInt8[np.ndarray, "height width 3"]:
+def _render_plaster(buffers: GeometryBuffers) -> UInt8[np.ndarray, "height width 3"]:
     shade = 200 * (0.35 + 0.65 * buffers.normal @ _LIGHT).clip(0, 1)
     picture = np.full(buffers.hit.shape, 200, np.uint8)
     picture[buffers.hit] = shade.astype(np.uint8)

@@ -12,7 +12,7 @@ from skinnet.shape._ibug import IBUG
 from skinnet.shape.procedural_head import CHART_EXTENT, IDENTITY_SIZE, compute_head_radius
 
 
-def mirrored() -> np.ndarray:
+def find_partners() -> np.ndarray:
     """For each vertex the one at its mirror image."""
     mean = build_default_model().mean
     order, image = np.lexsort(mean.T), np.lexsort((mean * [-1, 1, 1]).T)
@@ -39,7 +39,7 @@ def test_it_is_one_disc_that_looks_outside() -> None:
 
 
 def test_it_is_its_own_mirror_image_to_the_last_bit() -> None:
-    model, partner = build_default_model(), mirrored()
+    model, partner = build_default_model(), find_partners()
     assert np.array_equal(model.mean[partner], model.mean * [-1, 1, 1])
     assert np.array_equal(model.basis[:, partner], model.basis * [-1, 1, 1])
     triangles, images = np.sort(model.triangles, 1), np.sort(partner[model.triangles], 1)
@@ -54,10 +54,10 @@ def test_modes_are_orthonormal_and_ordered() -> None:
     assert (np.diff(model.variances) < 0).all() and model.variances[-1] > 0
 
 
-def test_a_drawn_head_lies_on_the_model() -> None:
+def test_a_sampled_head_lies_on_the_model() -> None:
     model = build_default_model()
-    lot = torch.Generator().manual_seed(5)
-    numbers = torch.randn(1, IDENTITY_SIZE, generator=lot, dtype=torch.float64)
+    rng = torch.Generator().manual_seed(5)
+    numbers = torch.randn(1, IDENTITY_SIZE, generator=rng, dtype=torch.float64)
     radius = compute_head_radius(numbers, 115, 153)[0, 0].numpy()
     column = np.rint(model.uv[:, 0] * 152).astype(int)
     row = np.rint((1 - model.uv[:, 1]) * 114).astype(int)

@@ -40,7 +40,7 @@ def group(points: list, labels: dict[str, list[int]]) -> dict:
     }
 
 
-def written(path: Path, content: object) -> Path:
+def write_file(path: Path, content: object) -> Path:
     path.write_text(content if isinstance(content, str) else json.dumps(content))
     return path
 
@@ -62,14 +62,14 @@ def test_landmarks_come_back_as_they_were_written(tmp_path: Path, suffix: str) -
 
 
 def test_names_may_be_numbers(tmp_path: Path) -> None:
-    path = written(tmp_path / "face.csv", "36,1,2,3\nibug_8, 0,0,0\nibug_1,0,0,1\nscar,1,1,1\n")
+    path = write_file(tmp_path / "face.csv", "36,1,2,3\nibug_8, 0,0,0\nibug_1,0,0,1\nscar,1,1,1\n")
     assert list(read_landmarks(path)) == ["right_eye_outer", "chin", "ibug_1", "scar"]
     with pytest.raises(InputError, match=r"Landmark 68 is none of iBUG's"):
-        read_landmarks(written(tmp_path / "far.csv", "68,1,2,3\n"))
+        read_landmarks(write_file(tmp_path / "far.csv", "68,1,2,3\n"))
 
 
 def test_vertices_of_a_mesh_stand_for_points(tmp_path: Path) -> None:
-    path = written(tmp_path / "face.json", {"nose_tip": 31, "chin": [1, 2, 3]})
+    path = write_file(tmp_path / "face.json", {"nose_tip": 31, "chin": [1, 2, 3]})
     read = read_landmarks(path, dome())
     assert np.array_equal(read["nose_tip"], dome().vertices[31])
     assert read["chin"].tolist() == [1, 2, 3]
@@ -79,7 +79,7 @@ def test_vertices_of_a_mesh_stand_for_points(tmp_path: Path) -> None:
 
 @pytest.mark.parametrize("vertex", [63, -1])
 def test_vertices_out_of_range_are_refused(tmp_path: Path, vertex: int) -> None:
-    path = written(tmp_path / "face.json", {"nose_tip": vertex})
+    path = write_file(tmp_path / "face.json", {"nose_tip": vertex})
     message = rf"face\.json: nose_tip is vertex {vertex}, and vertices go from 0 to 62"
     with pytest.raises(InputError, match=message):
         read_landmarks(path, dome())
@@ -88,7 +88,7 @@ def test_vertices_out_of_range_are_refused(tmp_path: Path, vertex: int) -> None:
 
 
 def test_picked_points_of_meshlab_are_read(tmp_path: Path) -> None:
-    read = read_landmarks(written(tmp_path / "face.pp", PP))
+    read = read_landmarks(write_file(tmp_path / "face.pp", PP))
     assert list(read) == ["nose_tip", "right_eye_outer"]
     assert read["nose_tip"].tolist() == [1, 2, 3.5]
 
@@ -97,7 +97,7 @@ def test_entities_are_refused(tmp_path: Path) -> None:
     with pytest.raises(
         InputError, match=r"bomb\.pp cannot be used: the file declares XML entities"
     ):
-        read_landmarks(written(tmp_path / "bomb.pp", BOMB))
+        read_landmarks(write_file(tmp_path / "bomb.pp", BOMB))
 
 
 def test_every_version_of_ljson_is_read(tmp_path: Path) -> None:
@@ -109,7 +109,7 @@ def test_every_version_of_ljson_is_read(tmp_path: Path) -> None:
     second = group(eye, {"leye": [0, 1, 2, 3, 4, 5]}) | {"version": 2}
     third = {"version": 3, "groups": {"LJSON": group(eye, {"left_eye": [0, 1, 2, 3, 4, 5]})}}
     for document in (first, second, third):
-        read = read_landmarks(written(tmp_path / "face.ljson", document))
+        read = read_landmarks(write_file(tmp_path / "face.ljson", document))
         assert list(read) == ["right_eye_outer", "ibug_37", "ibug_38", "right_eye_inner", "ibug_40"]
         assert read["right_eye_inner"].tolist() == [3, 0, 1]
 
@@ -117,7 +117,7 @@ def test_every_version_of_ljson_is_read(tmp_path: Path) -> None:
 def test_sixty_eight_points_under_other_labels_go_by_their_order(tmp_path: Path) -> None:
     all_of_them = [[float(i), 0, 0] for i in range(68)]
     document = group(all_of_them, {"all": list(range(68))}) | {"version": 2}
-    read = read_landmarks(written(tmp_path / "face.ljson", document))
+    read = read_landmarks(write_file(tmp_path / "face.ljson", document))
     assert read["chin"][0] == 8 and read["lips_lower"][0] == 66
 
 
@@ -140,7 +140,7 @@ def test_sixty_eight_points_under_other_labels_go_by_their_order(tmp_path: Path)
 )
 def test_damaged_files_are_refused(tmp_path: Path, name: str, content: object, fault: str) -> None:
     with pytest.raises(InputError, match=fault):
-        read_landmarks(written(tmp_path / name, content))
+        read_landmarks(write_file(tmp_path / name, content))
 
 
 def test_a_missing_file_is_named(tmp_path: Path) -> None:
@@ -188,11 +188,11 @@ def test_mirrored_landmarks_are_refused() -> None:
     swapped = {name: points()[_other_side(name)] for name in LANDMARKS}
     with pytest.raises(InputError, match="appear mirrored; swap left and right"):
         check_landmarks(swapped, small_model(), dome())
-    lot = np.random.default_rng(0)
-    turn = np.linalg.qr(lot.normal(size=(3, 3)))[0]
-    turn *= np.linalg.det(turn)
-    turned = {name: 3 * turn @ point + 7 for name, point in points().items()}
-    assert check_landmarks(turned, small_model()) == list(LANDMARKS)
+    rng = np.random.default_rng(0)
+    rotation = np.linalg.qr(rng.normal(size=(3, 3)))[0]
+    rotation *= np.linalg.det(rotation)
+    rotated = {name: 3 * rotation @ point + 7 for name, point in points().items()}
+    assert check_landmarks(rotated, small_model()) == list(LANDMARKS)
 
 
 def test_landmarks_in_a_plane_have_no_side() -> None:

@@ -5,7 +5,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from benchmarks.texture import sheet
+from benchmarks.texture import make_face_mesh
 from skinnet.errors import InputError
 from skinnet.images import srgb_to_linear
 from skinnet.mesh.mesh import Mesh
@@ -28,16 +28,16 @@ def flat(columns: int, rows: int, width: float = 1.0) -> Mesh:
     return Mesh(vertices, triangles, uv, triangles, texture, "plane")
 
 
-def moved(mesh: Mesh, *by: float) -> Mesh:
+def move(mesh: Mesh, *by: float) -> Mesh:
     return replace(mesh, vertices=mesh.vertices * [0.8, 0.8, 1] + by)
 
 
-def projected(
-    fitted: Mesh, scan: Mesh, limit: float = 0.1, normal_limit: float = 60.0
+def project(
+    fitted: Mesh, scan: Mesh, max_distance: float = 0.1, max_angle: float = 60.0
 ) -> WarpedTexture:
     assert fitted.uv is not None and fitted.uv_triangles is not None
     space = TextureSpace(fitted.uv, fitted.uv_triangles, SIZE)
-    return project_texture(space, fitted, scan, limit, normal_limit)
+    return project_texture(space, fitted, scan, max_distance, max_angle)
 
 
 def expected(scan: Mesh, by: tuple[float, float], scale: float = 0.8) -> np.ndarray:
@@ -48,15 +48,15 @@ def expected(scan: Mesh, by: tuple[float, float], scale: float = 0.8) -> np.ndar
 
 
 def test_the_texture_under_the_model_is_found() -> None:
-    image, mask = projected(moved(flat(9, 7), 0.1, 0.05, 0.02), flat(16, 13))
+    image, mask = project(move(flat(9, 7), 0.1, 0.05, 0.02), flat(16, 13))
     assert mask.all()
     assert np.abs(image[..., :2] - expected(flat(2, 2), (0.1, 0.05))).max() < 0.01
     assert np.allclose(image[..., 2], srgb_to_linear(np.array([99], np.uint8)), atol=1e-6)
 
 
 def test_nothing_is_invented_beyond_the_scan() -> None:
-    scan, fitted = flat(16, 13), moved(flat(21, 21), 0.5, 0.1, 0.0)
-    image, mask = projected(fitted, scan, limit=10.0)
+    scan, fitted = flat(16, 13), move(flat(21, 21), 0.5, 0.1, 0.0)
+    image, mask = project(fitted, scan, max_distance=10.0)
     inside = 0.5 + 0.8 * (np.arange(SIZE) + 0.5) / SIZE < 1
     # Per texel, not per triangle: the mask ends where the scan does.
     assert np.array_equal(mask, np.tile(inside, (SIZE, 1)))
@@ -65,25 +65,27 @@ def test_nothing_is_invented_beyond_the_scan() -> None:
 
 
 @pytest.mark.parametrize(
-    ("fitted", "limit", "covered"),
+    ("fitted", "max_distance", "covered"),
     [
-        (moved(flat(5, 5), 0.1, 0.1, 0.3), 0.2, False),
-        (moved(flat(5, 5), 0.1, 0.1, 0.3), 0.4, True),
+        (move(flat(5, 5), 0.1, 0.1, 0.3), 0.2, False),
+        (move(flat(5, 5), 0.1, 0.1, 0.3), 0.4, True),
         (
-            replace(moved(flat(5, 5), 0.1, 0.1, 0.0), triangles=flat(5, 5).triangles[:, ::-1]),
+            replace(move(flat(5, 5), 0.1, 0.1, 0.0), triangles=flat(5, 5).triangles[:, ::-1]),
             1.0,
             False,
         ),
     ],
 )
-def test_far_and_turned_surfaces_do_not_count(fitted: Mesh, limit: float, covered: bool) -> None:
-    if not covered and limit == 1.0:
+def test_far_and_flipped_surfaces_do_not_count(
+    fitted: Mesh, max_distance: float, covered: bool
+) -> None:
+    if not covered and max_distance == 1.0:
         fitted = replace(fitted, uv_triangles=fitted.triangles)
-    _, mask = projected(fitted, flat(9, 9), limit)
+    _, mask = project(fitted, flat(9, 9), max_distance)
     assert mask.all() if covered else not mask.any()
 
 
-def charts(mesh: Mesh) -> Mesh:
+def cut_texture(mesh: Mesh) -> Mesh:
     """The same plane whose texture is cut at x = 1/2 into two charts that have changed places."""
     assert mesh.uv is not None and mesh.texture is not None
     right = mesh.vertices[mesh.triangles].mean(1)[:, 0] > 0.5
@@ -95,7 +97,7 @@ def charts(mesh: Mesh) -> Mesh:
 
 def test_triangles_across_a_seam_take_each_texel_from_its_own_chart() -> None:
     # 17 columns put a seam of the scan at x = 1/2; the model's 4 columns straddle it.
-    image, mask = projected(moved(flat(4, 4), 0.1, 0.1, 0.0), charts(flat(17, 9)))
+    image, mask = project(move(flat(4, 4), 0.1, 0.1, 0.0), cut_texture(flat(17, 9)))
     assert mask.all()
     difference = np.abs(image[..., :2] - expected(flat(2, 2), (0.1, 0.1)))
     seam = np.abs(0.1 + 0.8 * (np.arange(SIZE) + 0.5) / SIZE - 0.5) < 1 / 128
@@ -103,7 +105,7 @@ def test_triangles_across_a_seam_take_each_texel_from_its_own_chart() -> None:
 
 
 def test_triangles_across_a_cut_inside_one_chart_do_too() -> None:
-    cut = charts(flat(17, 9))
+    cut = cut_texture(flat(17, 9))
     assert cut.uv is not None and cut.uv_triangles is not None
     # A sliver of texture far from both joins the charts into one island.
     bridge = np.array([[0, len(cut.uv) - 1, 1]])
@@ -115,18 +117,18 @@ def test_triangles_across_a_cut_inside_one_chart_do_too() -> None:
         triangles=np.concatenate([cut.triangles, added]),
         uv_triangles=np.concatenate([cut.uv_triangles, bridge]),
     )
-    image, mask = projected(moved(flat(4, 4), 0.1, 0.1, 0.0), joined)
+    image, mask = project(move(flat(4, 4), 0.1, 0.1, 0.0), joined)
     difference = np.abs(image[..., :2] - expected(flat(2, 2), (0.1, 0.1)))
     seam = np.abs(0.1 + 0.8 * (np.arange(SIZE) + 0.5) / SIZE - 0.5) < 1 / 128
     assert mask.all() and difference[:, ~seam].max() < 0.01
 
 
 def test_a_curved_scan_textures_the_model_made_from_it() -> None:
-    vertices, triangles = sheet(40, 51)
+    vertices, triangles = make_face_mesh(40, 51)
     uv = 0.5 + vertices[:, :2] / [180, 240]
     texture = flat(2, 2).texture
     scan = Mesh(vertices, triangles, uv, triangles, texture, "scan")
-    image, mask = projected(replace(scan, texture=None), scan, limit=1.0)
+    image, mask = project(replace(scan, texture=None), scan, max_distance=1.0)
     space = TextureSpace(uv, triangles, SIZE)
     # The rim and the edges of the holes are the scan's open edge.
     assert mask.sum() > 0.85 * space.mask.sum() and (space.mask | ~mask).all()
@@ -145,7 +147,7 @@ def test_a_curved_scan_textures_the_model_made_from_it() -> None:
 )
 def test_a_scan_without_texture_is_refused(change: dict[str, None], sentence: str) -> None:
     with pytest.raises(InputError, match=sentence):
-        projected(flat(3, 3), replace(flat(3, 3), **change))
+        project(flat(3, 3), replace(flat(3, 3), **change))
 
 
 def test_a_texture_space_of_another_model_is_refused() -> None:

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from scipy.spatial import Delaunay
 
-from benchmarks.texture import against_skimage
+from benchmarks.texture import compare_with_skimage
 from skinnet.errors import InputError
 from skinnet.texture.warp import TextureSpace, warp_texture
 
@@ -44,7 +44,7 @@ def test_a_linear_picture_follows_an_affine_map_exactly() -> None:
 
 
 def test_warp_equals_scikit_image_inside_the_mesh() -> None:
-    found = against_skimage(points=40, size=96)
+    found = compare_with_skimage(points=40, size=96)
     assert found["warp_vs_skimage_max_difference"] < 1e-5
 
 
