@@ -36,7 +36,7 @@ def main() -> None:
     run("maps", options.data / "scans/lps/head.obj", *model)
     run("maps", options.data / "scans/james/james.obj", *model, *WHITE)
     for name, change in {"head": ["--hemoglobin", 2], "james": ["--melanin", 1.5]}.items():
-        run("edit-maps", options.output / f"{name}_maps.npz", *change, "--relight.turn", 20)
+        run("edit-maps", options.output / f"{name}_maps.npz", *change, "--relight.yaw", 20)
 
 
 if __name__ == "__main__":

@@ -19,8 +19,13 @@ from skinnet.pipeline._output import MAPS_END, add_end, add_output, make_output_
 from skinnet.pipeline._progress import log
 from skinnet.pipeline.relight import RelightSettings
 
-RENAMED = {"relight.turn": "relight.yaw", "relight.tilt": "relight.pitch"}
-"""Keys and flags of earlier versions."""
+RENAMED = {
+    "relight.turn": "relight.yaw",
+    "relight.tilt": "relight.pitch",
+    "turn": "yaw",
+    "tilt": "pitch",
+}
+"""Flags and keys of earlier versions; errors in YAML name a key without its group."""
 
 _PIGMENTS = ("melanin", "hemoglobin")
 

@@ -3,8 +3,9 @@
 import numpy as np
 from jaxtyping import UInt8
 
-from skinnet.inference.panel import TILE, _draw_map, draw_grid, draw_picture
+from skinnet.inference.panel import _draw_map, draw_grid, draw_picture
 from skinnet.mesh.mesh import Mesh
+from skinnet.pipeline import relight
 from skinnet.render.lights import DirectionalLight, SphericalHarmonics
 from skinnet.render.rendering import render
 from skinnet.render.views import PerspectiveView, frame_face
@@ -15,14 +16,13 @@ _PLASTER = np.array([0.55, 0.53, 0.5])
 _MAX_DISTANCE = 3.0
 """Distance in mm at the end of the colour scale."""
 
-PICTURE_SIZE = TILE
 _DISTANCE_COLOURS = ((28, 70, 120), (120, 180, 200), (245, 235, 200), (230, 140, 70), (150, 20, 40))
 _BACKDROP = (0.75, 0.75, 0.75)
 
 
 def draw_fit(scan: Mesh, model: Mesh, fit: Registration) -> UInt8[np.ndarray, "h w 3"]:
     """Draw the scan, the fitted model and the distance between them, from the front."""
-    view = frame_face(model.vertices, (PICTURE_SIZE, PICTURE_SIZE))
+    view = frame_face(model.vertices, (relight.TILE_SIZE, relight.TILE_SIZE))
     buffers = trace_geometry(model, view)
     corners = model.triangles[buffers.triangle]
     distance = np.zeros(buffers.hit.shape)

@@ -12,10 +12,10 @@ from skinnet.appearance.maps_file import save_maps
 from skinnet.appearance.skin_texture import SkinTexture
 from skinnet.images.photograph import write_png
 from skinnet.images.srgb import linear_to_srgb, to_uint8
-from skinnet.inference.panel import BLANK, TILE, draw_grid, draw_picture, draw_pigment_map
+from skinnet.inference.panel import BLANK, draw_grid, draw_picture, draw_pigment_map
 from skinnet.mesh.mesh import Mesh
 from skinnet.mesh.mesh_file import write_mesh
-from skinnet.pipeline.relight import RelightSettings
+from skinnet.pipeline import relight
 
 _FLUSH, _TAN = 2.0, 1.5
 """Factors of hemoglobin and of melanin in Figure 6 of Alotaibi & Smith 2017."""
@@ -78,7 +78,7 @@ def draw_maps_panel(
 
     They are in the manner of Figures 4 and 6 of Alotaibi & Smith 2017.
     """
-    relight = RelightSettings(size=TILE)
+    settings = relight.RelightSettings(size=relight.TILE_SIZE)
     flushed = edit_texture(texture, PigmentEdit(), PigmentEdit(_FLUSH))
     tanned = edit_texture(texture, PigmentEdit(_TAN), PigmentEdit())
     faces = {
@@ -94,7 +94,7 @@ def draw_maps_panel(
         *draw_pigments(texture),
         draw_picture("skin without offset", show_albedo(plain.albedo(colour), texture)),
         *(
-            draw_picture(name, relight.render(face, fill_albedo(one.albedo(colour), one)))
+            draw_picture(name, settings.render(face, fill_albedo(one.albedo(colour), one)))
             for name, one in faces.items()
         ),
     ]

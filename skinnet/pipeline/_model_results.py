@@ -14,14 +14,11 @@ from skinnet.appearance.linear import LinearModel
 from skinnet.appearance.measures import Measures
 from skinnet.files import write_text
 from skinnet.images.photograph import write_png
-from skinnet.inference.panel import TILE
 from skinnet.mesh.mesh_file import read_mesh
+from skinnet.pipeline import relight
 from skinnet.pipeline._fit_archive import load_fit
 from skinnet.pipeline._model_figures import AlbedoRenderer, draw_hybrid, draw_linear, plot_measures
 from skinnet.pipeline._output import MAPS_END
-from skinnet.pipeline.relight import RelightSettings
-
-PICTURE_SIZE = TILE
 
 
 def make_renderer(files: list[Path]) -> AlbedoRenderer | None:
@@ -33,12 +30,11 @@ def make_renderer(files: list[Path]) -> AlbedoRenderer | None:
         return None
     archives = [load_fit(file) for file in fits]
     face = read_mesh(meshes[0])
-    shapes = [one.pose.apply_inverse(one.vertices) for fit in archives]
+    shapes = [fit.pose.apply_inverse(fit.vertices) for fit in archives]
     if any(shape.shape != face.vertices.shape for shape in shapes):
         return None
-    return partial(
-        RelightSettings(size=PICTURE_SIZE).render, replace(face, vertices=np.mean(shapes, 0))
-    )
+    face = replace(face, vertices=np.mean(shapes, 0))
+    return partial(relight.RelightSettings(size=relight.TILE_SIZE).render, face)
 
 
 def write_models(

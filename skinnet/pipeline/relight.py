@@ -7,10 +7,14 @@ import numpy as np
 from jaxtyping import Float32, UInt8
 
 from skinnet.errors import InputError
+from skinnet.inference.panel import TILE
 from skinnet.mesh.mesh import Mesh
 from skinnet.render.lights import DirectionalLight, Light, SphericalHarmonics
 from skinnet.render.rendering import SKIN_SPECULAR, render
 from skinnet.render.views import frame_face
+
+TILE_SIZE = TILE
+"""Pixels along a side of the faces on panels and figures."""
 
 Direction = tuple[float, float, float]
 

