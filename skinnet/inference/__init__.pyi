@@ -13,7 +13,6 @@ from .panel import draw_grid as draw_grid
 from .panel import draw_panel as draw_panel
 from .panel import draw_picture as draw_picture
 from .panel import draw_pigment_map as draw_pigment_map
-from .panel import round_up as round_up
 from .results import write_results as write_results
 
 __all__ = [
@@ -32,6 +31,5 @@ __all__ = [
     "draw_pigment_map",
     "get_decoder_path",
     "open_model",
-    "round_up",
     "write_results",
 ]

@@ -57,7 +57,7 @@ class Decomposer:
         0.03
     """
 
-    def __init__(self, model: str | Path | None = None, threads: int | None = None):
+    def __init__(self, model: str | Path | None = None, threads: int | None = None) -> None:
         if threads is not None and threads < 1:
             raise InputError(f"threads is at least 1, or None for all cores; got {threads}.")
         self.path = SHIPPED_ENCODER if model is None else Path(model)

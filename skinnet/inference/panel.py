@@ -131,19 +131,8 @@ def draw_pigment_map(
     return _draw_map(caption or name, values, mask, *_PIGMENTS[name], top)
 
 
-def round_up(value: float) -> float:
-    """Round up to 1, 1.5, 2, 3, 4, 5, 6 or 8 times a power of ten: the end of a scale.
-
-    Args:
-        value: any number; those below 1e-6 give 1e-6.
-
-    Returns:
-        The least such number that is not below `value`.
-
-    Example:
-        >>> round_up(1.2), round_up(37.0)
-        (1.5, 40.0)
-    """
+def _round_up(value: float) -> float:
+    """Round up to 1, 1.5, 2, 3, 4, 5, 6 or 8 times a power of ten, for the end of a scale."""
     if not value > 1e-6:
         return 1e-6
     power = 10.0 ** math.floor(math.log10(value))
@@ -183,7 +172,7 @@ def _draw_offset(values: NDArray[np.float32]) -> Image.Image:
 
 
 def _choose_top(values: NDArray[np.floating]) -> float:
-    return round_up(float(np.percentile(values, 99))) if values.size else 1.0
+    return _round_up(float(np.percentile(values, 99))) if values.size else 1.0
 
 
 def _apply_colour_map(values: NDArray[np.floating], anchors: _Anchors) -> NDArray[np.uint8]:

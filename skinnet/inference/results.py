@@ -49,8 +49,9 @@ def write_results(
         >>> from tempfile import mkdtemp
         >>> from skimage.data import astronaut
         >>> from skinnet import Decomposer
-        >>> found = Decomposer()(astronaut(), detail=False)
-        >>> write_results(Path(mkdtemp()), "astronaut", astronaut(), found, found.summary())
+        >>> photo, folder = astronaut(), Path(mkdtemp())
+        >>> decomposition = Decomposer()(photo, detail=False)
+        >>> write_results(folder, "a", photo, decomposition, decomposition.summary())
         11
     """
     try:

@@ -12,7 +12,7 @@ from skinnet.appearance.edit import PigmentEdit, edit_texture
 from skinnet.appearance.maps_file import load_maps, save_maps
 from skinnet.appearance.skin_texture import SkinTexture
 from skinnet.images.photograph import read_photo, write_png
-from skinnet.inference.panel import draw_grid, draw_picture, round_up
+from skinnet.inference.panel import _round_up, draw_grid, draw_picture
 from skinnet.mesh.mesh_file import read_mesh, write_mesh
 from skinnet.pipeline._maps_writer import add_texture, draw_pigments, fill_albedo, show_albedo
 from skinnet.pipeline._output import MAPS_END, add_end, add_output, make_output_folder
@@ -99,7 +99,7 @@ def _draw_rows(
 
 def _scale_end(before: SkinTexture, after: SkinTexture, name: str) -> float:
     values = [np.percentile(getattr(one, name)[one.mask], 99) for one in (before, after)]
-    return round_up(float(max(values)))
+    return _round_up(float(max(values)))
 
 
 def _write_faces(

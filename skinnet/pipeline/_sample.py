@@ -11,7 +11,7 @@ from skinnet.appearance.maps_file import save_maps
 from skinnet.appearance.skin_texture import SkinTexture
 from skinnet.errors import InputError
 from skinnet.images.photograph import write_png
-from skinnet.inference.panel import draw_grid, draw_picture, round_up
+from skinnet.inference.panel import _round_up, draw_grid, draw_picture
 from skinnet.pipeline._build_model import MODEL_FOLDER
 from skinnet.pipeline._maps_writer import draw_pigments, show_albedo
 from skinnet.pipeline._output import MAPS_END, add_end, add_output, make_output_folder
@@ -70,4 +70,6 @@ def _draw_samples(
 
 
 def _scale_end(textures: list[SkinTexture], name: str) -> float:
-    return round_up(max(float(np.percentile(getattr(one, name)[one.mask], 99)) for one in textures))
+    return _round_up(
+        max(float(np.percentile(getattr(one, name)[one.mask], 99)) for one in textures)
+    )

@@ -29,7 +29,7 @@ class ColourTable:
         top: fractions of melanin and hemoglobin at the last nodes; the first ones are at 0.
     """
 
-    def __init__(self, colours: NDArray[np.float32], top: tuple[float, float]):
+    def __init__(self, colours: NDArray[np.float32], top: tuple[float, float]) -> None:
         self.shape, self.top = colours.shape[:2], top
         self._flat = np.ascontiguousarray(colours.reshape(-1, 3), np.float32)
 

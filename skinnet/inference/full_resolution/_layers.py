@@ -43,9 +43,15 @@ def enlarge_layers(maps: Mapping[str, Image], decoded: Image, width: int, height
     offset = np.empty((height, width, 3), np.float32)
     for channel in range(3):
         offset[..., channel] = resize(maps["offset"][..., channel], width, height)
-    names = ("melanin", "hemoglobin", "shading", "specular", "mask")
-    enlarged = [resize(maps[name], width, height) for name in names]
-    return Layers(*enlarged, offset, resize(to_uint8(decoded), width, height))
+    return Layers(
+        melanin=resize(maps["melanin"], width, height),
+        hemoglobin=resize(maps["hemoglobin"], width, height),
+        shading=resize(maps["shading"], width, height),
+        specular=resize(maps["specular"], width, height),
+        mask=resize(maps["mask"], width, height),
+        offset=offset,
+        reconstruction=resize(to_uint8(decoded), width, height),
+    )
 
 
 def sharpen_layers(
