@@ -1,9 +1,9 @@
-"""What the decoder's fast mode costs and how exact it is, beside the two usual ways.
+"""Time, memory and error of the decoder's fast mode, beside the two usual ways.
 
-`python -m benchmarks.decoder [--json]`. Forward and backward for 8 images of 256 x 256 in float32,
-with gradients to both maps, the light's weights and temperature, the camera and its white balance.
-The ways take turns in one process and the least time of each counts. Memory is the growth of the
-resident peak over what was resident before, in a process of its own (Linux only).
+`python -m benchmarks.decoder [--json]` runs forward and backward for 8 images of 256 x 256 in
+float32, with gradients to both maps, the light's weights and temperature, the camera and its white
+balance. The ways take turns in one process, and the least time of each is reported. Memory is the
+growth of the resident peak in a process of its own (Linux only).
 """
 
 import subprocess
@@ -25,11 +25,11 @@ Picture = Callable[[Tensor, Tensor, Capture], Tensor]
 IMAGES, SIZE, ROUNDS = 8, 256, 3
 REPEATS = {"fast": 20, "grid_matmul": 4, "grid": 3, "bands": 1}
 GRID = 256
-"""Nodes a side of the usual table, evenly spaced."""
+"""Nodes along each side of the usual table, evenly spaced."""
 
 
-def scene(images: int, size: int, seed: int = 0) -> tuple[Tensor, Tensor, Capture]:
-    """Smooth maps in the range of skin, mixed lights and odd cameras."""
+def draw_scene(images: int, size: int, seed: int = 0) -> tuple[Tensor, Tensor, Capture]:
+    """Draw smooth maps in the range of skin, mixed lights and cameras."""
     torch.manual_seed(seed)
     coarse = torch.rand(2, images, 9, 9)
     smooth = F.interpolate(coarse, (size, size), mode="bicubic", align_corners=True).clamp(0, 1)
@@ -43,15 +43,15 @@ def scene(images: int, size: int, seed: int = 0) -> tuple[Tensor, Tensor, Captur
     return 0.01 + 0.42 * smooth[0], 0.02 + 0.05 * smooth[1], capture
 
 
-def decoded(decoder: SkinDecoder, f_mel: Tensor, f_blood: Tensor, capture: Capture) -> Tensor:
-    """The layer under test, in either of its modes."""
+def decode(decoder: SkinDecoder, f_mel: Tensor, f_blood: Tensor, capture: Capture) -> Tensor:
+    """Run the layer under test, in either of its modes."""
     return decoder.compose(f_mel, f_blood, None, None, None, capture)
 
 
 class SpectralGrid:
-    """The usual way: 33 channels looked up for every pixel, then light, camera and a 3 x 3 matrix.
+    """The usual way: look up 33 channels for every pixel, then apply light, camera and a matrix.
 
-    `at_once` makes one matrix product of the last three, which is fairer than common code is.
+    `at_once` merges the last three into one matrix product, which is faster than common code.
     """
 
     def __init__(self, decoder: SkinDecoder, at_once: bool):
@@ -60,9 +60,10 @@ class SpectralGrid:
         self.table = decoder.reflectance(unit[:, None], unit).movedim(-1, 0)[None]
 
     def __call__(self, f_mel: Tensor, f_blood: Tensor, capture: Capture) -> Tensor:
-        place = torch.stack([f_blood, f_mel], -1) * 2 - 1
+        """Render linear sRGB."""
+        grid = torch.stack([f_blood, f_mel], -1) * 2 - 1
         table = self.table.expand(len(f_mel), -1, -1, -1)
-        spectra = F.grid_sample(table, place, align_corners=True)
+        spectra = F.grid_sample(table, grid, align_corners=True)
         matrix = self.camera.matrix(capture)
         if self.at_once:
             return (matrix.mT @ spectra.flatten(2)).unflatten(-1, f_mel.shape[1:])
@@ -76,19 +77,19 @@ class SpectralGrid:
 def step(
     picture: Picture, scene: tuple[Tensor, Tensor, Capture], weight: Tensor
 ) -> tuple[Tensor, ...]:
-    """One forward and backward; the gradients of the maps and of the capture."""
+    """Run forward and backward; return the gradients of the maps and of the capture."""
     f_mel, f_blood, capture = scene
     inputs = [value.detach().requires_grad_() for value in (f_mel, f_blood, *capture)]
     image = picture(inputs[0], inputs[1], Capture(*inputs[2:]))
     return torch.autograd.grad(image, inputs, weight)
 
 
-def least_times(ways: dict[str, Picture], images: int, size: int, rounds: int) -> dict[str, float]:
-    """The least time of each way, in seconds, the ways taking turns."""
-    views, weight = scene(images, size), torch.randn(images, 3, size, size)
+def time_ways(ways: dict[str, Picture], images: int, size: int, rounds: int) -> dict[str, float]:
+    """Measure the least time of each way in seconds; the ways take turns."""
+    views, weight = draw_scene(images, size), torch.randn(images, 3, size, size)
     times: dict[str, list[float]] = {name: [] for name in ways}
     for name in [*ways] * rounds:
-        # The shorter a step, the oftener: one disturbance spoils it.
+        # Short steps are repeated more often, because one interruption spoils them.
         for _ in range(REPEATS[name]):
             start = time.perf_counter()
             step(ways[name], views, weight)
@@ -96,13 +97,13 @@ def least_times(ways: dict[str, Picture], images: int, size: int, rounds: int) -
     return {name: min(values) for name, values in times.items()}
 
 
-def errors(size: int) -> Results:
-    """Largest error in linear RGB over the unit square, and the worst relative gradient error."""
-    _, _, capture = scene(IMAGES, 9, seed=1)
+def measure_errors(size: int) -> Results:
+    """Measure the largest error in linear RGB, and the largest relative error of a gradient."""
+    _, _, capture = draw_scene(IMAGES, 9, seed=1)
     square = torch.rand(2, IMAGES, size, size)
     views = square[0], square[1], capture
     weight = torch.randn(IMAGES, 3, size, size)
-    fast, bands = (partial(decoded, SkinDecoder(fast=fast)) for fast in (True, False))
+    fast, bands = (partial(decode, SkinDecoder(fast=fast)) for fast in (True, False))
     with torch.no_grad():
         error = (fast(*views) - bands(*views)).abs().max().item()
     pairs = zip(step(fast, views, weight), step(bands, views, weight), strict=True)
@@ -110,22 +111,23 @@ def errors(size: int) -> Results:
     return {"max_error": error, "gradient_error": max(relative)}
 
 
-def peak_growth(fast: bool, images: int, size: int) -> int:
-    """Growth in kB of this process' resident peak by one step, after a small one to warm up."""
-    picture = partial(decoded, SkinDecoder(fast=fast))
-    step(picture, scene(images, 8), torch.ones(images, 3, 8, 8))
-    views, weight = scene(images, size), torch.ones(images, 3, size, size)
-    # The peak so far is that of the imports; 5 forgets it.
+def measure_peak_growth(fast: bool, images: int, size: int) -> int:
+    """Measure the growth in kB of this process' resident peak by one step, after a warm-up."""
+    picture = partial(decode, SkinDecoder(fast=fast))
+    step(picture, draw_scene(images, 8), torch.ones(images, 3, 8, 8))
+    views, weight = draw_scene(images, size), torch.ones(images, 3, size, size)
+    # The peak so far is that of the imports; writing 5 resets it.
     Path("/proc/self/clear_refs").write_text("5")
-    before = _resident("VmRSS")
+    before = _read_resident("VmRSS")
     step(picture, views, weight)
-    return _resident("VmHWM") - before
+    return _read_resident("VmHWM") - before
 
 
-def memory(fast: bool, images: int = IMAGES, size: int = SIZE) -> int:
-    """`peak_growth` in a process of its own."""
+def measure_memory(fast: bool, images: int = IMAGES, size: int = SIZE) -> int:
+    """Measure the peak in a process of its own."""
     code = (
-        f"from benchmarks.decoder import peak_growth; print(peak_growth({fast}, {images}, {size}))"
+        "from benchmarks.decoder import measure_peak_growth as measure\n"
+        f"print(measure({fast}, {images}, {size}))"
     )
     root = Path(__file__).parents[1]
     done = subprocess.run(
@@ -134,28 +136,28 @@ def memory(fast: bool, images: int = IMAGES, size: int = SIZE) -> int:
     return int(done.stdout)
 
 
-def _resident(name: str) -> int:
+def _read_resident(name: str) -> int:
     lines = Path("/proc/self/status").read_text().splitlines()
     return next(int(line.split()[1]) for line in lines if line.startswith(name))
 
 
 def measure(images: int = IMAGES, size: int = SIZE, rounds: int = ROUNDS) -> Results:
-    """Every figure, by name."""
+    """Measure every figure, by name."""
     fast, bands = SkinDecoder(), SkinDecoder(fast=False)
     ways: dict[str, Picture] = {
-        "fast": partial(decoded, fast),
-        "bands": partial(decoded, bands),
+        "fast": partial(decode, fast),
+        "bands": partial(decode, bands),
         "grid": SpectralGrid(bands, at_once=False),
         "grid_matmul": SpectralGrid(bands, at_once=True),
     }
-    seconds = least_times(ways, images, size, rounds)
+    seconds = time_ways(ways, images, size, rounds)
     speedups = {f"speedup_vs_{name}": s / seconds["fast"] for name, s in seconds.items()}
     speedups.pop("speedup_vs_fast")
-    peaks = {name: memory(name == "fast", images, size) for name in ("fast", "bands")}
+    peaks = {name: measure_memory(name == "fast", images, size) for name in ("fast", "bands")}
     return {
         **speedups,
         "memory_ratio": peaks["fast"] / peaks["bands"],
-        **errors(min(size, 128)),
+        **measure_errors(min(size, 128)),
         "seconds": seconds,
         "memory_mb": {name: kilobytes / 1024 for name, kilobytes in peaks.items()},
     }

@@ -1,11 +1,11 @@
-"""How long the inverse of a table of skin takes on a whole map, and how exact it is.
+"""Time and error of inverse rendering a whole map, beside a tree of the table's colours.
 
-`python -m benchmarks.lookup [--json]`. A 1024 x 1024 float32 map is inverted with a table of
-256 x 256 nodes: the face of a synthetic head, with brows, lashes, nostrils, mouth and what beard it
-has, a uniform cast as of a residual shading, and noise, so that no two texels are the same. The
-nearest node is that of scipy's cKDTree on the same colours, with two workers; the two take turns in
-one process and the least time of each counts. `skin` is the same with the skin alone, which lies
-on the table's surface but for the noise and is what suits a tree best.
+`python -m benchmarks.lookup [--json]` inverts a 1024 x 1024 float32 map with a table of 256 x 256
+nodes. The map is the face of a synthetic head: skin, brows, lashes, nostrils, mouth and any beard,
+with a uniform colour cast and with noise, so that no two texels are the same. `NearestColour` is
+compared with scipy's cKDTree, which uses two workers, on the same colours. The two take turns in
+one process, and the least time of each is reported. `skin` is the same for skin alone, which is on
+the table's surface except for noise. That is the best case for a tree.
 """
 
 import time
@@ -37,19 +37,19 @@ SIZE, NODES, ROUNDS, REPEATS = 1024, 256, 2, 3
 WORKERS = 2
 SEED = 3
 FACE = (slice(0.15, 0.85), slice(0.2, 0.8))
-"""Rows and columns of the head's chart that show the face, as shares of the whole."""
+"""Rows and columns of the head's texture that show the face, as shares of the whole."""
 
 CAST = (0.004, -0.002, 0.003)
 NOISE = 0.003
 """Linear RGB added to the map, and the standard deviation of the noise in white."""
 
 SAMPLE = 2000
-"""Texels that are compared with every node; the others are compared with the tree's answer."""
+"""Texels that are compared by exhaustive search; the others are compared with the tree."""
 
 
 @torch.no_grad()
-def face(lookup: SkinLookup, matrix: Tensor, size: int) -> tuple[Tensor, Tensor]:
-    """Linear RGB [size, size, 3] of a face, and of the skin under its brows, lashes and beard."""
+def render_face(lookup: SkinLookup, matrix: Tensor, size: int) -> tuple[Tensor, Tensor]:
+    """Render linear RGB [size, size, 3] of a face, and of its skin without brows and beard."""
     rng = np.random.default_rng(SEED)
     scene = sample_scene(rng, make_blank_cast(8).to_buffers())
     charts = paint_face(map_tensors(lambda value: value[None], scene.face))
@@ -70,13 +70,13 @@ def face(lookup: SkinLookup, matrix: Tensor, size: int) -> tuple[Tensor, Tensor]
     )
     both = skin * (1 - cover) + paint * cover + torch.tensor(CAST)
     noise = NOISE * torch.from_numpy(rng.normal(0, 1, both.shape))
-    # As a camera's, it grows with the root of the light.
+    # A camera's noise grows with the root of the light.
     noisy = [one + noise * (0.2 + one.clamp_min(0).sqrt()) for one in (both, skin)]
     return noisy[0].float(), noisy[1].float()
 
 
-def least(function: Callable[[], object], repeats: int) -> float:
-    """The least time of several calls, in seconds."""
+def time_least(function: Callable[[], object], repeats: int) -> float:
+    """Measure the least time of several calls, in seconds."""
     times = []
     for _ in range(repeats):
         start = time.perf_counter()
@@ -85,25 +85,25 @@ def least(function: Callable[[], object], repeats: int) -> float:
     return min(times)
 
 
-def beside_a_tree(
+def compare_with_tree(
     table: Float[np.ndarray, "mel blood 3"], colours: Float[np.ndarray, "n 3"], rounds: int
 ) -> Results:
-    """Times of building and asking both, and whether they and brute force agree."""
+    """Time the building and querying of both, and check that they agree with brute force."""
     nodes = table.reshape(-1, 3)
     ours, tree = NearestColour(table), cKDTree(nodes)
     times: dict[str, list[float]] = {name: [] for name in ("build", "tree_build", "query", "tree")}
     for _ in range(rounds):
-        times["build"].append(least(lambda: NearestColour(table), 1))
-        times["tree_build"].append(least(lambda: cKDTree(nodes), 1))
-        times["query"].append(least(lambda: ours(colours), REPEATS))
-        times["tree"].append(least(lambda: tree.query(colours, workers=WORKERS), 1))
+        times["build"].append(time_least(lambda: NearestColour(table), 1))
+        times["tree_build"].append(time_least(lambda: cKDTree(nodes), 1))
+        times["query"].append(time_least(lambda: ours(colours), REPEATS))
+        times["tree"].append(time_least(lambda: tree.query(colours, workers=WORKERS), 1))
     seconds = {name: min(values) for name, values in times.items()}
     found = ours(colours)
     return {
         "speedup_vs_kdtree": seconds["tree"] / seconds["query"],
         "speedup_with_building": (seconds["tree"] + seconds["tree_build"])
         / (seconds["query"] + seconds["build"]),
-        "same_as_brute_force": same(nodes, colours, found, tree),
+        "same_as_brute_force": agree(nodes, colours, found, tree),
         "query_seconds": seconds["query"],
         "build_seconds": seconds["build"],
         "kdtree_seconds": seconds["tree"],
@@ -111,13 +111,13 @@ def beside_a_tree(
     }
 
 
-def same(
+def agree(
     nodes: Float[np.ndarray, "nodes 3"],
     colours: Float[np.ndarray, "n 3"],
     found: Int[np.ndarray, "n"],
     tree: cKDTree,
 ) -> bool:
-    """The tree's node for every colour, or another as near, and every node's for a sample."""
+    """Check that every answer is as near as the tree's, and a sample as near as any node."""
     distance = np.linalg.norm(colours - nodes[found], axis=1)
     nearest, index = tree.query(colours, workers=WORKERS)
     sample = np.random.default_rng(0).choice(len(colours), min(SAMPLE, len(colours)), replace=False)
@@ -134,8 +134,10 @@ def same(
     return bool(by_tree.all() and by_all.all())
 
 
-def round_trip(lookup: SkinLookup, matrix: Tensor, inverse: SkinInverse, count: int) -> Results:
-    """Errors of fractions drawn evenly from the table's range, from float32 colours."""
+def measure_round_trip(
+    lookup: SkinLookup, matrix: Tensor, inverse: SkinInverse, count: int
+) -> Results:
+    """Measure errors of fractions recovered from float32 colours, uniform in the table's range."""
     unit = torch.rand(2, count, generator=torch.Generator().manual_seed(0), dtype=torch.float64)
     true = torch.stack([F_MEL_RANGE[1] * unit[0], F_BLOOD_RANGE[1] * unit[1]])
     parts = [lookup.reflectance.bands(*some) @ matrix for some in true.split(2**15, 1)]
@@ -149,24 +151,24 @@ def round_trip(lookup: SkinLookup, matrix: Tensor, inverse: SkinInverse, count: 
 
 
 def measure(size: int = SIZE, nodes: int = NODES, rounds: int = ROUNDS) -> Results:
-    """Every figure, by name."""
+    """Measure every figure, by name."""
     lookup, matrix = (
         SkinLookup(SkinReflectance(dtype=torch.float64)),
         load_spectrum_to_srgb("D65", "mean"),
     )
-    both, skin = face(lookup, matrix, size)
+    both, skin = render_face(lookup, matrix, size)
     inverse = lookup.inverse(matrix, (nodes, nodes))
     table = inverse.colours.numpy()
     figures, on_skin = (
-        beside_a_tree(table, rgb.reshape(-1, 3).numpy(), rounds) for rgb in (both, skin)
+        compare_with_tree(table, rgb.reshape(-1, 3).numpy(), rounds) for rgb in (both, skin)
     )
     on = inverse(both).on_manifold
     return {
         **figures,
-        "seconds": least(lambda: inverse(both, refine=False), REPEATS),
-        "refined_seconds": least(lambda: inverse(both), REPEATS),
-        "table_seconds": least(lambda: lookup.inverse(matrix, (nodes, nodes)), 1),
-        **round_trip(lookup, matrix, inverse, min(size**2, 2**18)),
+        "seconds": time_least(lambda: inverse(both, refine=False), REPEATS),
+        "refined_seconds": time_least(lambda: inverse(both), REPEATS),
+        "table_seconds": time_least(lambda: lookup.inverse(matrix, (nodes, nodes)), 1),
+        **measure_round_trip(lookup, matrix, inverse, min(size**2, 2**18)),
         "on_manifold": float(on.float().mean()),
         "skin": on_skin,
     }

@@ -1,9 +1,9 @@
 """How well two pigment fractions explain the measured skin of 100 people.
 
-`python -m benchmarks.spectra [--json]`. Root mean square errors of reflectance at 33 bands, for
-every preset; with the vessels' radius chosen on one half of the people and scored on the other; and
-for spectra recovered from their colour under D65 alone. In-sample principal components, which
-nobody can beat with as many numbers a spectrum, stand beside them.
+`python -m benchmarks.spectra [--json]` prints root mean square errors of reflectance at 33 bands:
+for every preset; with the vessels' radius chosen on one half of the people and scored on the other;
+and for spectra that are recovered from their colour under D65 alone. In-sample principal components
+are the yardstick: no model with as many numbers for each spectrum has a lower error.
 """
 
 from collections.abc import Callable
@@ -26,7 +26,7 @@ from skinnet.physics import (
 Model = Callable[[Tensor, Tensor], Tensor]
 
 WIDE = ((0.0, 0.6), (0.0, 0.3))
-"""Bounds of f_mel and f_blood."""
+"""Bounds of f_mel and f_blood, wider than any skin."""
 
 PAPER_RANGE = ((0.01, 0.43), (0.02, 0.07))
 RADII = tuple(step * 2.5e-4 for step in range(17))
@@ -35,11 +35,11 @@ RADII = tuple(step * 2.5e-4 for step in range(17))
 SEED, SPLITS = 0, 50
 SCALES = (0.25, 2.0)
 STIFFNESS = 0.3
-"""Weight of the scale against colour: 7 % off in it is as likely as 0.02 off in colour."""
+"""Weight of the scale against colour: an error of 7 % in scale costs as much as .02 in colour."""
 
 
-def measured() -> Float[Tensor, "people wavelength"]:
-    """Reflectance of the inner forearm of 100 people (NIST, doi 10.18434/M38597)."""
+def load_forearms() -> Float[Tensor, "people wavelength"]:
+    """Load the reflectance of the inner forearm of 100 people (NIST, doi 10.18434/M38597)."""
     text = (Path(__file__).parent / "data" / "nist_forearm_100.csv").read_text(encoding="utf-8")
     rows = [line.split(",") for line in text.splitlines()[2:]]
     return torch.tensor([[float(value) for value in row[1:]] for row in rows]).double().T
@@ -50,10 +50,10 @@ def fit(
     target: Float[Tensor, "people value"],
     bounds: tuple[tuple[float, float], ...] = WIDE,
 ) -> Float[Tensor, "people parameter"]:
-    """Parameters within `bounds` that bring `model` nearest to each target.
+    """Fit the parameters of a model to each target, within bounds.
 
-    Levenberg and Marquardt's steps, all people at once, from the best point of a coarse grid. A
-    parameter that leaves its bounds is put back on them, and stays out of the step that follows.
+    Levenberg and Marquardt's steps, for all people at once, start at the best point of a coarse
+    grid. A parameter that leaves its bounds is clipped, and is held in the step that follows.
     """
     low, high = torch.tensor(bounds, dtype=torch.float64).T
     f = _start(model, target, low, high)
@@ -71,7 +71,7 @@ def fit(
 
 
 def _start(model: Model, target: Tensor, low: Tensor, high: Tensor) -> Tensor:
-    # Spaced as u^2: what a fraction does is greatest while it is small.
+    # Spaced as u^2: the colour changes fastest where a fraction is small.
     axes = [
         a + (b - a) * torch.linspace(0, 1, 40).double() ** 2 for a, b in zip(low, high, strict=True)
     ]
@@ -84,7 +84,7 @@ def _step(
 ) -> Tensor:
     unit = torch.eye(len(low), dtype=torch.float64)
     here, delta = model(*f.T), 1e-6
-    # Differences: on arrays this small forward-mode differentiation takes ten times as long.
+    # Finite differences: forward-mode differentiation of such small arrays takes ten times longer.
     J = torch.stack([(model(*(f + delta * e).T) - here) / delta for e in unit], -1)
     residual = target - here
     gradient = (J.mT @ residual[..., None])[..., 0]
@@ -96,27 +96,25 @@ def _step(
 
 
 def rmse(recovered: Tensor, target: Tensor) -> Float[Tensor, "people"]:
-    """Root mean square error of each spectrum."""
+    """Compute the root mean square error of each spectrum."""
     return (recovered - target).square().mean(-1).sqrt()
 
 
-def fitted_rmse(
+def fit_rmse(
     optics: SkinOptics | str, target: Tensor, bounds: tuple[tuple[float, float], ...] = WIDE
 ) -> Float[Tensor, "people"]:
-    """Error of each spectrum's best fit."""
+    """Compute the error of each spectrum's best fit."""
     model = SkinReflectance(optics, dtype=torch.float64).bands
     return rmse(model(*fit(model, target, bounds).T), target)
 
 
-def split_half(target: Tensor, radii: tuple[float, ...], splits: int = SPLITS) -> Results:
-    """Chooses the radius on one half of the people and scores it on the other half."""
-    errors = torch.stack(
-        [fitted_rmse(SkinOptics.preset("paper", r_vessel=r), target) for r in radii]
-    )
-    generator = torch.Generator().manual_seed(SEED)
+def score_split_half(target: Tensor, radii: tuple[float, ...], splits: int = SPLITS) -> Results:
+    """Choose the radius on one half of the people and score it on the other half."""
+    errors = torch.stack([fit_rmse(SkinOptics.preset("paper", r_vessel=r), target) for r in radii])
+    rng = torch.Generator().manual_seed(SEED)
     chosen, held_out = [], []
     for _ in range(splits):
-        order = torch.randperm(len(target), generator=generator)
+        order = torch.randperm(len(target), generator=rng)
         ours, theirs = order.chunk(2)
         best = int(errors[:, ours].quantile(0.5, dim=1).argmin())
         chosen.append(best)
@@ -132,22 +130,21 @@ def split_half(target: Tensor, radii: tuple[float, ...], splits: int = SPLITS) -
     }
 
 
-def d65_matrix() -> Float[Tensor, "wavelength 3"]:
-    """Spectrum to linear sRGB under D65, the observer as the camera."""
+def load_d65_matrix() -> Float[Tensor, "wavelength 3"]:
+    """Load the spectrum-to-sRGB matrix of D65, with the standard observer as the camera."""
     return spectrum_to_srgb(load_light("D6504K"), load_observer(), load_observer())
 
 
-def from_rgb(
+def recover_from_rgb(
     rgb: Float[Tensor, "people 3"], stiffness: float = 0.0
 ) -> Float[Tensor, "people wavelength"]:
-    """Spectra recovered from linear sRGB alone: two fractions and a scale.
+    """Recover spectra from linear sRGB alone, by two fractions and a scale.
 
-    Without stiffness three numbers are found from three, which is to say the fractions from the two
-    chromaticities and then the scale. With it, |s model - rgb|^2 + stiffness^2 (s - 1)^2 is made
-    least: a reflectance is not known to scale only, and a scale far from one is a sign that the
-    colour lies off the model.
+    With no stiffness, three numbers are fitted to three: the fractions to the two chromaticities,
+    and then the scale. With stiffness, |s model - rgb|^2 + stiffness^2 (s - 1)^2 is minimised: the
+    scale of a reflectance is known, so a scale far from one means that the colour is off the model.
     """
-    matrix, bands = d65_matrix(), SkinReflectance(dtype=torch.float64).bands
+    matrix, bands = load_d65_matrix(), SkinReflectance(dtype=torch.float64).bands
 
     def colours(f_mel: Tensor, f_blood: Tensor, scale: Tensor) -> Tensor:
         colour = scale[:, None] * (bands(f_mel, f_blood) @ matrix)
@@ -158,26 +155,26 @@ def from_rgb(
     return scale[:, None] * bands(f_mel, f_blood)
 
 
-def up_to_scale(recovered: Tensor, target: Tensor) -> Float[Tensor, "people wavelength"]:
-    """Brings each recovered spectrum to the scale of the measured one."""
+def rescale(recovered: Tensor, target: Tensor) -> Float[Tensor, "people wavelength"]:
+    """Scale each recovered spectrum to the measured one."""
     scale = (recovered * target).sum(-1) / recovered.square().sum(-1)
     return scale[:, None] * recovered
 
 
-def principal_components(target: Tensor, count: int) -> Float[Tensor, "people"]:
-    """In-sample error of the mean and `count` components, the least that is possible."""
+def score_principal_components(target: Tensor, count: int) -> Float[Tensor, "people"]:
+    """Compute the in-sample error of `count` principal components, the least that is possible."""
     mean = target.mean(0)
     _, _, V = torch.linalg.svd(target - mean, full_matrices=False)
     return rmse(mean + (target - mean) @ V[:count].T @ V[:count], target)
 
 
 def measure(radii: tuple[float, ...] = RADII) -> Results:
-    """Every figure, by name."""
+    """Measure every figure, by name."""
     threads = torch.get_num_threads()
-    # On arrays of a hundred spectra threads wait for each other longer than they work.
+    # On arrays of a hundred spectra, threads wait for each other longer than they work.
     torch.set_num_threads(1)
     try:
-        return _measure(measured(), radii)
+        return _measure(load_forearms(), radii)
     finally:
         torch.set_num_threads(threads)
 
@@ -185,27 +182,29 @@ def measure(radii: tuple[float, ...] = RADII) -> Results:
 def _measure(target: Tensor, radii: tuple[float, ...]) -> Results:
     results: Results = {}
     for preset in PRESETS:
-        results[preset] = _spread(fitted_rmse(preset, target))
-        inside = _spread(fitted_rmse(preset, target, PAPER_RANGE))["median"]
+        results[preset] = _spread(fit_rmse(preset, target))
+        inside = _spread(fit_rmse(preset, target, PAPER_RANGE))["median"]
         results[preset]["paper_range_median"] = inside
-    results["split_half"] = split_half(target, radii=radii)
-    results |= colour_alone(target)
-    results["pca"] = {str(n): _spread(principal_components(target, n))["median"] for n in (1, 2, 3)}
+    results["split_half"] = score_split_half(target, radii=radii)
+    results |= score_colour_alone(target)
+    results["pca"] = {
+        str(n): _spread(score_principal_components(target, n))["median"] for n in (1, 2, 3)
+    }
     return results
 
 
-def colour_alone(target: Tensor) -> Results:
-    """Recovery from linear sRGB under D65.
+def score_colour_alone(target: Tensor) -> Results:
+    """Score spectra that are recovered from linear sRGB under D65.
 
-    `rgb` takes fractions and scale from the colour alone. `rgb_up_to_scale` is given the scale of
-    the measured spectrum, as for a photograph whose exposure is known; `rgb_scale_near_one` weighs
-    the scale against one.
+    `rgb` fits fractions and scale to the colour alone. `rgb_up_to_scale` is given the scale of the
+    measured spectrum, as for a photograph whose exposure is known. `rgb_scale_near_one` penalises a
+    scale far from one.
     """
-    rgb = target @ d65_matrix()
-    free, stiff = from_rgb(rgb), from_rgb(rgb, STIFFNESS)
+    rgb = target @ load_d65_matrix()
+    free, stiff = recover_from_rgb(rgb), recover_from_rgb(rgb, STIFFNESS)
     return {
         "rgb": _spread(rmse(free, target)),
-        "rgb_up_to_scale": _spread(rmse(up_to_scale(free, target), target)),
+        "rgb_up_to_scale": _spread(rmse(rescale(free, target), target)),
         "rgb_scale_near_one": _spread(rmse(stiff, target)),
     }
 

@@ -1,4 +1,4 @@
-"""The individual typology angle, by which dermatology sorts skin from its colour."""
+"""The individual typology angle, by which dermatology classifies skin by its colour."""
 
 import torch
 from jaxtyping import Float
@@ -20,13 +20,13 @@ _EDGE = 6 / 29
 
 
 def typology_angle(linear: Float[Tensor, "*shape 3"]) -> Float[Tensor, "*shape"]:
-    """atan2(L* - 50, b*) in degrees of linear sRGB whose white is D65."""
-    lightness, _, b = lab(linear).unbind(-1)
+    """Compute atan2(L* - 50, b*) in degrees, of linear sRGB whose white is D65."""
+    lightness, _, b = srgb_to_lab(linear).unbind(-1)
     return torch.rad2deg(torch.atan2(lightness - 50, b))
 
 
-def lab(linear: Float[Tensor, "*shape 3"]) -> Float[Tensor, "*shape 3"]:
-    """CIE 1976 L*a*b* of linear sRGB relative to D65 (CIE 015:2018, section 8.2.1)."""
+def srgb_to_lab(linear: Float[Tensor, "*shape 3"]) -> Float[Tensor, "*shape 3"]:
+    """Convert linear sRGB to CIE 1976 L*a*b* relative to D65 (CIE 015:2018, section 8.2.1)."""
     to_xyz = srgb_to_xyz()
     relative = linear.to(to_xyz) @ to_xyz.mT / to_xyz.sum(-1)
     root = relative.clamp_min(_EDGE**3) ** (1 / 3)
@@ -35,5 +35,5 @@ def lab(linear: Float[Tensor, "*shape 3"]) -> Float[Tensor, "*shape 3"]:
 
 
 def group(angle: float) -> str:
-    """Name of the group that an angle falls into."""
+    """Return the name of the group of an angle."""
     return next(name for name, low in GROUPS.items() if angle > low or name == "dark")

@@ -1,7 +1,7 @@
-"""The mathematics of skin and camera once more, in NumPy, written apart from the package.
+"""Skin and camera a second time, in NumPy, written independently of the package.
 
-Nothing here imports `skinnet`: a mistake has to be made twice, in two ways, to go unnoticed. The
-tables of measured numbers are the only thing the two have in common.
+Nothing here imports `skinnet`, so a mistake would have to be made twice, in two ways, to go
+unnoticed. Only the tables of measured numbers are shared.
 """
 
 import csv
@@ -34,7 +34,7 @@ PAPER: Mapping[str, float] = MappingProxyType(
 
 
 def columns(name: str) -> dict[str, Array]:
-    """Reads a table of one row a wavelength."""
+    """Read a table of one row a wavelength."""
     with (TABLES / f"{name}.csv").open(encoding="utf-8") as file:
         rows = list(csv.reader(line for line in file if not line.startswith("#")))
     values = np.array(rows[1:], dtype=float)
@@ -43,7 +43,7 @@ def columns(name: str) -> dict[str, Array]:
 
 
 def measured_cameras() -> dict[str, Array]:
-    """Reads the sensitivities of each measured camera, [33, 3]."""
+    """Read the sensitivities of each measured camera, [33, 3]."""
     with (TABLES / "cameras.csv").open(encoding="utf-8") as file:
         rows = list(csv.reader(line for line in file if not line.startswith("#")))[1:]
     curves = {(row[0], row[1]): np.array(row[2:], dtype=float) for row in rows}
@@ -51,25 +51,25 @@ def measured_cameras() -> dict[str, Array]:
     return {name: np.stack([curves[name, c] for c in "RGB"], axis=-1) for name in names}
 
 
-def packed(mu: Array, r: float) -> Array:
-    """Lowers an absorption coefficient as vessels of radius r do, Duysens 1956."""
+def pack_pigment(mu: Array, r: float) -> Array:
+    """Pigment packaging: the absorption of blood in vessels of radius r (Duysens 1956)."""
     return mu if r == 0 else mu * -np.expm1(-2 * mu * r) / (2 * mu * r)
 
 
 def baseline(floor: float = 0.244, scale: float = 85.3) -> Array:
-    """Gives the absorption of tissue without pigment."""
+    """Return the absorption of tissue without pigment."""
     return floor + scale * np.exp(-(WAVELENGTHS - 154) / 66.2)
 
 
 def scattering() -> Array:
-    """Gives the reduced scattering of the dermis, Mie and Rayleigh."""
+    """Return the reduced scattering of the dermis, Mie and Rayleigh."""
     return 2e5 * WAVELENGTHS**-1.5 + 2e12 * WAVELENGTHS**-4
 
 
 def kubelka_munk(k: Array, s: Array, d: float, printed: bool = False) -> Array:
-    """Reflects from a layer over black, in the exponential form of section 3.3.
+    """Reflectance of a layer over black, in the exponential form of section 3.3.
 
-    The print has 1 + beta^2 and 1 - beta^2 where Kubelka and Munk have the squares of the sums.
+    The paper prints 1 + beta^2 and 1 - beta^2 for (1 + beta)^2 and (1 - beta)^2.
     """
     K, beta = np.sqrt(k * (k + 2 * s)), np.sqrt(k / (k + 2 * s))
     plus, minus = (1 + beta**2, 1 - beta**2) if printed else ((1 + beta) ** 2, (1 - beta) ** 2)
@@ -78,7 +78,7 @@ def kubelka_munk(k: Array, s: Array, d: float, printed: bool = False) -> Array:
 
 
 def reflectance(preset: str, f_mel: ArrayLike, f_blood: ArrayLike, **constants: float) -> Array:
-    """Gives the spectra, [..., 33], of a preset with some of its constants changed."""
+    """Return the spectra, [..., 33], of a preset with some of its constants changed."""
     mel, blood = (np.asarray(f, dtype=float)[..., None] for f in (f_mel, f_blood))
     own = {
         "printed": {},
@@ -104,8 +104,8 @@ def _epidermis(preset: str, mel: Array, blood: Array, base: Array, c: Mapping[st
     oxy, deoxy = _hemoglobin(c)
     f = c["f_oxy"]
     share = 0.25 * blood
-    carried = share * (f * (f * oxy) + (1 - f) * ((1 - f) * deoxy))
-    return mel * mu_mel * c["d_epd"] + carried + (1 - mel - share) * base
+    hemoglobin = share * (f * (f * oxy) + (1 - f) * ((1 - f) * deoxy))
+    return mel * mu_mel * c["d_epd"] + hemoglobin + (1 - mel - share) * base
 
 
 def _melanin(a: float, p: float, b: float, q: float, c: Mapping[str, float]) -> Array:
@@ -121,25 +121,25 @@ def _hemoglobin(c: Mapping[str, float]) -> tuple[Array, Array]:
 
 def _blood(c: Mapping[str, float]) -> Array:
     oxy, deoxy = _hemoglobin(c)
-    return packed(c["f_oxy"] * oxy + (1 - c["f_oxy"]) * deoxy, c["r"])
+    return pack_pigment(c["f_oxy"] * oxy + (1 - c["f_oxy"]) * deoxy, c["r"])
 
 
 def srgb_to_xyz() -> Array:
-    """Derives the matrix of IEC 61966-2-1 from its primaries and its white."""
+    """Derive the matrix of IEC 61966-2-1 from its primaries and its white."""
     x, y = np.array([0.64, 0.30, 0.15]), np.array([0.33, 0.60, 0.06])
     primaries = np.stack([x / y, np.ones(3), (1 - x - y) / y])
     return primaries * np.linalg.solve(primaries, D65)
 
 
 def camera_to_xyz(sensitivity: Array) -> Array:
-    """Fits the observer with the camera's balanced curves, then sends white to D65."""
-    fitted, *_ = np.linalg.lstsq(sensitivity, np.stack(_observer(), axis=-1), rcond=None)
-    matrix = fitted.T
+    """Fit the observer with the camera's balanced curves, then sends white to D65."""
+    solution, *_ = np.linalg.lstsq(sensitivity, np.stack(_observer(), axis=-1), rcond=None)
+    matrix = solution.T
     return matrix * (D65 / matrix.sum(axis=1))[:, None]
 
 
 def linear_srgb(spectra: Array, light: Array, sensitivity: Array) -> Array:
-    """Photographs reflectance spectra, [..., 33], in linear sRGB, [..., 3]."""
+    """Photograph reflectance spectra, [..., 33], in linear sRGB, [..., 3]."""
     light = light / light.sum()
     sensitivity = sensitivity / np.einsum("j,jc->c", light, sensitivity)
     balanced = np.einsum("...j,j,jc->...c", spectra, light, sensitivity)
@@ -152,7 +152,7 @@ def _observer() -> list[Array]:
 
 
 def daylight(temperature: float) -> Array:
-    """Gives the CIE daylight of a correlated colour temperature in kelvin, unit sum."""
+    """Return the CIE daylight of a correlated colour temperature in kelvin, unit sum."""
     t = 1e3 / temperature
     if temperature <= 7000:
         x = 0.244063 + 0.09911 * t + 2.9678 * t**2 - 4.6070 * t**3

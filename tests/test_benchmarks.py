@@ -67,7 +67,7 @@ def test_spectra_are_those_shared(shared_data: Path) -> None:
     ours = (Path(spectra.__file__).parent / "data" / "nist_forearm_100.csv").read_text()
     assert ours.startswith("# ") and "10.18434/M38597" in ours.splitlines()[0]
     assert ours.split("\n", 1)[1] == shared
-    assert spectra.measured().shape == (100, 33)
+    assert spectra.load_forearms().shape == (100, 33)
 
 
 @pytest.mark.skipif(sys.platform != "linux", reason="Resident peaks are read from /proc.")
@@ -83,8 +83,8 @@ def test_decoder_reports_its_figures() -> None:
 @pytest.mark.parametrize("at_once", [True, False])
 def test_the_usual_way_is_the_same_function(at_once: bool) -> None:
     bands = decoder.SkinDecoder(fast=False)
-    view = decoder.scene(2, 32)
-    expected = decoder.decoded(bands, *view)
+    view = decoder.draw_scene(2, 32)
+    expected = decoder.decode(bands, *view)
     assert torch.allclose(decoder.SpectralGrid(bands, at_once)(*view), expected, atol=1e-3)
 
 
@@ -128,8 +128,11 @@ def test_lookup_reports_its_figures() -> None:
 
 
 def test_the_map_of_the_lookup_has_no_texel_twice() -> None:
-    skin, matrix = lookup.SkinLookup(SkinReflectance(dtype=torch.float64)), spectra.d65_matrix()
-    for rgb in lookup.face(skin, matrix, 128):
+    skin, matrix = (
+        lookup.SkinLookup(SkinReflectance(dtype=torch.float64)),
+        spectra.load_d65_matrix(),
+    )
+    for rgb in lookup.render_face(skin, matrix, 128):
         assert rgb.dtype == torch.float32 and rgb.shape == (128, 128, 3)
         assert len(rgb.reshape(-1, 3).unique(dim=0)) == 128**2
 

@@ -1,9 +1,9 @@
-"""Write skinnet/tables from colour-science and the measured tables.
+"""Write skinnet/physics/tables from colour-science and the measured tables.
 
-    python tools/bake_tables.py ../shared/data/tables
+    python -m tools.bake_tables shared/data/tables
 
-The wheel carries plain CSV files on the 33 bands, 400 to 720 nm, each with its source in its first
-lines, so that neither colour-science nor the raw tables are needed at run time.
+The wheel carries plain CSV files on the 33 bands, 400 to 720 nm. Each has its source in its first
+line. So neither colour-science nor the raw tables are needed at run time.
 """
 
 import csv
@@ -13,6 +13,7 @@ from pathlib import Path
 
 import colour
 import numpy as np
+from numpy.typing import NDArray
 
 BANDS = np.arange(400, 721, 10)
 TARGET = Path(__file__).parents[1] / "skinnet" / "physics" / "tables"
@@ -20,12 +21,14 @@ ILLUMINANTS = ("A", "FL2", "FL7", "FL11", "LED-B1", "LED-B3", "LED-B5", "LED-V1"
 
 
 def main(raw: Path) -> None:
+    """Write every table, from a folder of measured tables."""
     write_light_tables()
     write_pigments(raw)
     write_cameras(raw)
 
 
 def write_light_tables() -> None:
+    """Write observer, daylight and illuminants."""
     shape = colour.SpectralShape(400, 720, 10)
     observer = colour.MSDS_CMFS["CIE 1931 2 Degree Standard Observer"].copy().align(shape)
     components = colour.colorimetry.SDS_BASIS_FUNCTIONS_CIE_ILLUMINANT_D_SERIES
@@ -51,13 +54,16 @@ def write_light_tables() -> None:
     )
 
 
-def band_power(name: str) -> np.ndarray:
-    # A lamp's narrow lines fall between samples 10 nm apart: average the 5 nm table over each band.
-    fine = colour.SDS_ILLUMINANTS[name].copy().align(colour.SpectralShape(395, 725, 5)).values
-    return (fine[:-2:2] + 2 * fine[1:-1:2] + fine[2::2]) / 4
+def band_power(name: str) -> NDArray[np.float64]:
+    """Average the power of an illuminant over each band."""
+    # A lamp's narrow lines fall between samples that are 10 nm apart; the table has 5 nm.
+    aligned = colour.SDS_ILLUMINANTS[name].copy().align(colour.SpectralShape(395, 725, 5))
+    fine: NDArray[np.float64] = aligned.values
+    return np.asarray(fine[:-2:2] + 2 * fine[1:-1:2] + fine[2::2]) / 4
 
 
 def write_pigments(raw: Path) -> None:
+    """Write the extinction of hemoglobin and melanin."""
     hemoglobin = np.loadtxt(raw / "hemoglobin_250_1000_2nm.csv", delimiter=",", skiprows=2)
     melanin = np.loadtxt(raw / "melanin_400_720.csv", delimiter=",", skiprows=1)
     write(
@@ -75,6 +81,7 @@ def write_pigments(raw: Path) -> None:
 
 
 def write_cameras(raw: Path) -> None:
+    """Write the sensitivities of the measured cameras."""
     lines = (raw / "cameras_380_780_5nm.csv").read_text(encoding="utf-8").splitlines()
     head, *rows = csv.reader(line for line in lines if not line.startswith("#"))
     columns = [head.index(str(band)) for band in BANDS]
@@ -87,6 +94,7 @@ def write_cameras(raw: Path) -> None:
 
 
 def write(name: str, source: str, head: Sequence[str], rows: Iterable[Sequence[object]]) -> None:
+    """Write a table with its source in the first line."""
     with (TARGET / name).open("w", newline="", encoding="utf-8") as file:
         file.write(f"# {source}\n")
         writer = csv.writer(file, lineterminator="\n")
