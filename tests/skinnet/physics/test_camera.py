@@ -167,7 +167,7 @@ def test_tables_are_trainable(name: str, random_capture: Callable[..., Capture])
     assert torch.isfinite(gradient).all() and gradient.abs().max() > 0
 
 
-def test_components_explain_what_they_say() -> None:
+def test_components_explain_the_stated_share_of_variance() -> None:
     camera = SpectralCamera(components=51, dtype=torch.float64)
     assert camera.explained.sum() == pytest.approx(1, abs=1e-9)
     assert (camera.explained.diff() <= 0).all()

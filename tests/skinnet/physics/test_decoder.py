@@ -21,8 +21,8 @@ MODES = pytest.mark.parametrize("fast", [True, False], ids=["fast", "bands"])
 
 
 def maps(*shape: int, count: int = 2, seed: int = 0) -> list[torch.Tensor]:
-    generator = torch.Generator().manual_seed(seed)
-    return list(torch.rand(count, *shape, generator=generator, dtype=D))
+    rng = torch.Generator().manual_seed(seed)
+    return list(torch.rand(count, *shape, generator=rng, dtype=D))
 
 
 @MODES
@@ -199,7 +199,7 @@ def test_one_capture_serves_a_batch_and_one_map_many_captures(
 
 
 @pytest.mark.parametrize("shapes", [((), ()), ((4,), (4,)), ((4, 5), (6, 5))])
-def test_what_is_no_map_is_refused_in_words(shapes: tuple[tuple[int, ...], ...]) -> None:
+def test_an_input_that_is_not_a_map_is_named(shapes: tuple[tuple[int, ...], ...]) -> None:
     f_mel, f_blood = (torch.full(shape, 0.05) for shape in shapes)
     decode = SkinDecoder().forward.__wrapped__  # the checks of shapes under pytest come first
     with pytest.raises(ValueError, match="maps"):

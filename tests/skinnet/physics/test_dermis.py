@@ -41,7 +41,7 @@ def test_layer_without_absorption_reflects_sd_over_one_plus_sd(s: float, d: floa
 
 
 @given(absorption, scattering)
-def test_thick_layer_reflects_what_a_bottomless_one_does(k: float, s: float) -> None:
+def test_a_thick_layer_reflects_as_an_infinite_one(k: float, s: float) -> None:
     K = (k * (k + 2 * s)) ** 0.5
     actual = kubelka_munk(tensor(k), tensor(s), tensor(1e4))
     assert actual.item() == pytest.approx(s / (k + s + K), abs=1e-5)

@@ -1,4 +1,4 @@
-"""Fractions come back from the colours that they made, and other colours are known as such."""
+"""Fractions are recovered from their colours, and colours that are not skin are flagged."""
 
 import pytest
 import torch
@@ -32,7 +32,7 @@ def test_the_range_is_the_encoders() -> None:
 
 
 @pytest.mark.parametrize("dtype", [D, torch.float32])
-def test_fractions_come_back(dtype: torch.dtype) -> None:
+def test_fractions_are_recovered(dtype: torch.dtype) -> None:
     f_mel, f_blood = fractions(20_000)
     found = INVERSE(colours(f_mel, f_blood).to(dtype))
     for ours, true in ((found.f_mel, f_mel), (found.f_blood, f_blood)):
@@ -43,7 +43,7 @@ def test_fractions_come_back(dtype: torch.dtype) -> None:
 
 
 @pytest.mark.parametrize("name", ["A", "LED-B3", "D50"])
-def test_they_come_back_under_other_lights_and_a_calibration(name: str) -> None:
+def test_fractions_are_recovered_under_other_lights_and_a_calibration(name: str) -> None:
     transform = torch.tensor([[1.3, 0.1, 0.0], [0.05, 1.1, 0.1], [0.0, -0.1, 0.9]], dtype=D)
     matrix = load_spectrum_to_srgb(name, "Nikon D200") @ transform.mT
     f_mel, f_blood = fractions(5000, seed=1)
@@ -53,7 +53,7 @@ def test_they_come_back_under_other_lights_and_a_calibration(name: str) -> None:
 
 
 @pytest.mark.parametrize("preset", ["paper", "authors"])
-def test_they_come_back_from_other_presets(preset: str) -> None:
+def test_fractions_are_recovered_with_other_presets(preset: str) -> None:
     lookup = SkinLookup(SkinReflectance(preset, dtype=D))
     f_mel, f_blood = fractions(5000, seed=2)
     found = lookup.inverse(MATRIX)(lookup.reflectance(f_mel, f_blood) @ MATRIX)
@@ -62,7 +62,7 @@ def test_they_come_back_from_other_presets(preset: str) -> None:
         assert error.quantile(0.5) < 1e-4 and error.quantile(0.99) < 1e-3
 
 
-def test_without_refinement_it_is_the_nearest_node() -> None:
+def test_without_refinement_the_answer_is_the_nearest_node() -> None:
     inverse = LOOKUP.inverse(MATRIX, nodes=(40, 30))
     rgb = colours(*fractions(500)) + 0.02 * torch.randn(500, 3, dtype=D)
     found = inverse(rgb, refine=False)
@@ -74,7 +74,9 @@ def test_without_refinement_it_is_the_nearest_node() -> None:
 
 @pytest.mark.parametrize("dtype", [D, torch.float32])
 @pytest.mark.parametrize("spread", [0.01, 0.3, 1e4])
-def test_refinement_leads_closer_and_stays_in_range(spread: float, dtype: torch.dtype) -> None:
+def test_refinement_reduces_the_distance_and_stays_in_range(
+    spread: float, dtype: torch.dtype
+) -> None:
     noise = torch.randn(1500, 3, generator=torch.Generator().manual_seed(0), dtype=D)
     rgb = colours(*fractions(1500)) + spread * noise
     rgb = rgb.to(dtype)
@@ -84,7 +86,7 @@ def test_refinement_leads_closer_and_stays_in_range(spread: float, dtype: torch.
         assert (fraction >= low).all() and (fraction <= high * (1 + 1e-6)).all()
 
 
-def test_offsets_give_the_colour_back() -> None:
+def test_model_plus_offset_is_the_colour() -> None:
     rgb = torch.rand(500, 3, dtype=D) * 1.4 - 0.2
     for refine in (True, False):
         found = INVERSE(rgb, refine)
@@ -92,7 +94,7 @@ def test_offsets_give_the_colour_back() -> None:
         assert torch.allclose(again, rgb, atol=1e-7)
 
 
-def test_an_offset_from_within_stands_on_the_surface() -> None:
+def test_an_offset_inside_the_range_is_normal_to_the_surface() -> None:
     noise = torch.randn(1000, 3, generator=torch.Generator().manual_seed(0), dtype=D)
     rgb = colours(*fractions(1000)) + 0.01 * noise
     found = INVERSE(rgb)
@@ -106,7 +108,7 @@ def test_an_offset_from_within_stands_on_the_surface() -> None:
     assert along.abs().max() < 1e-5
 
 
-def test_the_border_is_skin_and_beyond_it_is_not() -> None:
+def test_the_border_is_on_the_manifold_and_colours_beyond_are_not() -> None:
     f_mel = torch.tensor([0.0, 0.0, 0.43, 0.2, 0.2], dtype=D)
     f_blood = torch.tensor([0.02, 0.0, 0.05, 0.0, 0.15], dtype=D)
     border = INVERSE(colours(f_mel, f_blood))
@@ -121,7 +123,7 @@ def test_the_border_is_skin_and_beyond_it_is_not() -> None:
     assert found.f_blood[2] == 0.03 and found.f_blood[3] == 0.06
 
 
-def test_what_is_not_skin_is_flagged() -> None:
+def test_colours_that_are_not_skin_are_flagged() -> None:
     rgb = torch.tensor([[0.2, 0.3, 0.8], [-0.1, -0.2, -0.3], [0.3, 0.3, 0.3], [9, 9, 9]])
     for refine in (True, False):
         found = INVERSE(rgb, refine)
@@ -130,7 +132,7 @@ def test_what_is_not_skin_is_flagged() -> None:
 
 
 @pytest.mark.parametrize("refine", [True, False])
-def test_damaged_colours_give_nan_and_leave_the_others_alone(refine: bool) -> None:
+def test_damaged_colours_give_nan_and_do_not_change_the_others(refine: bool) -> None:
     rgb = colours(*fractions(6)).float()
     expected = INVERSE(rgb[3:], refine)
     rgb[0, 1], rgb[1, 0], rgb[2, 2] = torch.nan, torch.inf, -1e7
@@ -147,18 +149,18 @@ def test_leading_axes_are_kept(shape: tuple[int, ...]) -> None:
     assert found.offset.shape == (*shape, 3) and found.on_manifold.dtype == torch.bool
 
 
-def test_a_permuted_image_is_read_as_what_it_is() -> None:
+def test_a_permuted_image_is_inverted_correctly() -> None:
     rgb = torch.rand(3, 5, 6)
     expected = INVERSE(rgb.permute(1, 2, 0).contiguous())
     assert torch.equal(INVERSE(rgb.permute(1, 2, 0)).offset, expected.offset)
 
 
-def test_half_precision_is_answered_in_single() -> None:
+def test_half_precision_gives_single_precision() -> None:
     rgb = colours(*fractions(10)).half().requires_grad_()
     assert INVERSE(rgb).f_mel.dtype == torch.float32 and not INVERSE(rgb).f_mel.requires_grad
 
 
-def test_a_trainable_constant_is_read_and_left_alone() -> None:
+def test_a_trainable_constant_is_used_and_not_changed() -> None:
     constant = nn.Parameter(torch.tensor(0.03))
     lookup = SkinLookup(SkinReflectance(SkinOptics.preset("calibrated", d_epd=constant)))
     inverse = lookup.inverse(MATRIX.float().requires_grad_())
@@ -170,7 +172,7 @@ def test_a_trainable_constant_is_read_and_left_alone() -> None:
 
 
 @pytest.mark.parametrize("rgb", [torch.rand(5, 4), torch.rand(3, 8, 8), torch.zeros(4, 3).byte()])
-def test_what_holds_no_colours_is_refused(rgb: Tensor) -> None:
+def test_an_input_without_colours_is_named(rgb: Tensor) -> None:
     with pytest.raises(
         InputError, match="linear RGB in floating point, with R, G and B in the last"
     ):

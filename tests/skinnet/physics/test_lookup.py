@@ -1,4 +1,4 @@
-"""The table: as exact as it says, over the whole square and to its edges, and never stale."""
+"""The table: its error over the unit square and at its edges, and that it is never stale."""
 
 import copy
 import pickle
@@ -82,7 +82,7 @@ def test_gradients_are_right_to_the_edges(corner: tuple[float, float]) -> None:
     )
 
 
-def test_table_is_kept_and_refreshed() -> None:
+def test_table_is_stored_and_refreshed() -> None:
     lookup = SkinLookup(SkinReflectance(dtype=D))
     assert lookup.spectra() is lookup.spectra() and "table" not in lookup.state_dict()
     lookup.reflectance.d_epd.fill_(0.05)

@@ -54,7 +54,7 @@ def test_every_preset_has_a_case() -> None:
 
 
 @pytest.mark.parametrize("name", CHANGED)
-def test_constant_matters_and_says_what_it_is(name: str) -> None:
+def test_constant_has_an_effect_and_metadata(name: str) -> None:
     item = next(item for item in fields(SkinOptics) if item.name == name)
     low, high = item.metadata["range"]
     assert low < high and item.metadata["unit"] and item.metadata["source"]

@@ -20,13 +20,13 @@ def test_daylight_is_cies(name: str) -> None:
     np.testing.assert_allclose(load_light(name).numpy(), values, rtol=2e-3)
 
 
-def test_a_light_has_unit_sum_whatever_its_name() -> None:
+def test_every_light_has_unit_sum() -> None:
     for name in ("A", "LED-B3", "led-b3", "D5500K", "D10000"):
         assert load_light(name).shape == (33,)
         assert load_light(name).sum().item() == pytest.approx(1)
 
 
-def test_the_papers_camera_is_there_whatever_the_case() -> None:
+def test_the_papers_camera_is_found_in_any_case() -> None:
     assert torch.equal(load_camera("nikon d200"), load_cameras()["Nikon D200"])
 
 
@@ -74,7 +74,7 @@ def test_a_bad_spectrum_is_named(tmp_path: Path, text: str, words: str) -> None:
         load_light(str(path))
 
 
-def test_an_unknown_name_lists_its_neighbours(tmp_path: Path) -> None:
+def test_an_unknown_name_lists_the_closest_names(tmp_path: Path) -> None:
     with pytest.raises(InputError, match=r"no camera 'Nikon D201'.*Nikon D200"):
         load_camera("Nikon D201")
     with pytest.raises(InputError, match=r"no light 'LED-B9'.*LED-B"):
