@@ -1,9 +1,10 @@
-"""The separable fit: what an evaluation and a whole fit cost, and how often a face is recovered.
+"""The separable fit: time of an evaluation and of a whole fit, and share of faces recovered.
 
 `python -m benchmarks.fit [--json]`. The model has the size of the Basel Face Model, 53,490 vertices
-and 199 modes: the procedural face, its own variation, and smooth random fields. `eval_ms` has a
-prior, so every pose is solved anew; `eval_free_ms` is the paper's form, whose elimination is done
-once. Both are set beside building A of equation 6 and solving it. Times are the least of several.
+and 199 modes: the procedural face with its own variation and smooth random fields. `eval_ms` has a
+prior, which needs a new elimination at every pose; `eval_free_ms` is the paper's form, whose
+elimination is computed once. Both are compared with building A of Equation 6 of Alotaibi & Smith
+2017 and solving it. Times are the least of several runs.
 """
 
 import json
@@ -40,22 +41,22 @@ HEIGHT = 180.0
 FACE = (1.45, 1.15)
 """Largest azimuth and elevation of the chart that count as face, in radians."""
 
-MARKS = 20
+LANDMARKS = 20
 
 
 @cache
-def big_model(vertices: int = VERTICES, modes: int = MODES, seed: int = 0) -> ShapeModel:
-    """A face of that many vertices, 180 mm tall, with that many modes."""
+def make_big_model(vertices: int = VERTICES, modes: int = MODES, seed: int = 0) -> ShapeModel:
+    """Make a face of that many vertices, 180 mm tall, with that many modes."""
     side = int(np.ceil(np.sqrt(vertices)))
-    draw = np.random.default_rng(seed)
+    rng = np.random.default_rng(seed)
     people = 2 * modes
     identity = np.concatenate(
-        [np.zeros((1, IDENTITY_SIZE)), draw.normal(size=(people, IDENTITY_SIZE))]
+        [np.zeros((1, IDENTITY_SIZE)), rng.normal(size=(people, IDENTITY_SIZE))]
     )
-    heads = _heads(identity, side)
+    heads = _compute_heads(identity, side)
     heads *= HEIGHT / np.ptp(heads[0, ..., 1])
     for row in range(people):
-        heads[row + 1] += _field(draw, side)
+        heads[row + 1] += _sample_field(rng, side)
     flat = heads.reshape(people + 1, -1, 3)[:, :vertices]
     mean, moved = flat[0], (flat[1:] - flat[1:].mean(0)).reshape(people, -1)
     values, vectors = np.linalg.eigh(moved @ moved.T)
@@ -65,14 +66,14 @@ def big_model(vertices: int = VERTICES, modes: int = MODES, seed: int = 0) -> Sh
         mean.astype(np.float32),
         basis.reshape(modes, vertices, 3).astype(np.float32),
         values / (people - 1),
-        _grid(side, vertices),
-        landmarks=_marks(mean),
+        _make_grid(side, vertices),
+        landmarks=_place_landmarks(mean),
         name="the benchmark's model",
     )
 
 
-def _heads(identity: np.ndarray, side: int) -> np.ndarray:
-    """Heads over the face's part of the chart, [people, side, side, 3]."""
+def _compute_heads(identity: np.ndarray, side: int) -> np.ndarray:
+    """Compute heads over the face's part of the chart, [people, side, side, 3]."""
     rows, columns = (
         int(np.ceil(1.01 * side * full / part))
         for part, full in zip(FACE[::-1], (1.5, 2.0), strict=True)
@@ -94,19 +95,19 @@ def _heads(identity: np.ndarray, side: int) -> np.ndarray:
     return radius[..., None] * direction
 
 
-def _field(draw: np.random.Generator, side: int) -> np.ndarray:
-    """A smooth displacement of about a millimetre [side, side, 3]."""
+def _sample_field(rng: np.random.Generator, side: int) -> np.ndarray:
+    """Sample a smooth displacement of about a millimetre, [side, side, 3]."""
     total = np.zeros((side, side, 3))
     for knots, size in ((5, 0.8), (12, 0.4)):
-        coarse = size * draw.normal(size=(knots, knots, 3))
+        coarse = size * rng.normal(size=(knots, knots, 3))
         total += zoom(
             coarse, (side / knots, side / knots, 1), order=2, grid_mode=True, mode="nearest"
         )
     return total
 
 
-def _grid(side: int, vertices: int) -> np.ndarray:
-    """Triangles between neighbours of a grid, of which only the first vertices exist."""
+def _make_grid(side: int, vertices: int) -> np.ndarray:
+    """Make triangles between neighbours of a grid, of which only the first vertices exist."""
     index = np.arange(side * side).reshape(side, side)
     a, b, c, d = index[:-1, :-1], index[1:, :-1], index[1:, 1:], index[:-1, 1:]
     halves = [np.stack([a, b, c], -1), np.stack([a, c, d], -1)]
@@ -114,10 +115,10 @@ def _grid(side: int, vertices: int) -> np.ndarray:
     return triangles[(triangles < vertices).all(1)]
 
 
-def _marks(mean: np.ndarray) -> dict[str, int]:
-    """Vertices far from one another, begun at the tip of the nose."""
+def _place_landmarks(mean: np.ndarray) -> dict[str, int]:
+    """Choose vertices far from each other, first the tip of the nose."""
     chosen = [int(mean[:, 2].argmax())]
-    while len(chosen) < MARKS:
+    while len(chosen) < LANDMARKS:
         far = np.min([np.linalg.norm(mean - mean[one], axis=1) for one in chosen], 0)
         chosen.append(int(np.where(mean[:, 2] > np.median(mean[:, 2]), far, 0).argmax()))
     return {f"mark_{number}": vertex for number, vertex in enumerate(chosen)}
@@ -133,9 +134,12 @@ class Case:
     truth: np.ndarray
     present: np.ndarray
 
-    def error(self, found: Registration, triangles: np.ndarray) -> tuple[float, float]:
-        """RMS distance in mm of the surface that was present to the fitted surface, and of the
-        fitted vertices to their own true places there."""
+    def measure_error(self, found: Registration, triangles: np.ndarray) -> tuple[float, float]:
+        """Measure RMS distances in mm where the scan is complete.
+
+        The first is from the true to the fitted surface, the second from the fitted vertices to
+        their own true places.
+        """
         fitted = self.pose.apply_inverse(found.vertices)
         there = ScanPoints(Mesh(fitted, triangles))
         across = there.find_nearest(self.truth[self.present]).measure_distance(
@@ -145,46 +149,49 @@ class Case:
         return float(np.sqrt(np.mean(across**2))), float(np.sqrt(np.mean(apart**2)))
 
 
-def case(
+def make_case(
     model: ShapeModel, seed: int, missing: float = 0.2, outliers: float = 0.01, noise: float = 2.0
 ) -> Case:
-    """A random face turned by up to 30 degrees, of any size and place.
+    """Make a scan of a random face, rotated by up to 30 degrees, at any scale and place.
 
-    A patch of it is missing, some vertices are 20 mm off (standard deviation, each axis), and
-    landmarks are `noise` mm off. The scan has other vertices than the model: the middles of its
-    triangles, joined anew.
+    A patch is missing, some vertices have noise of 20 mm and landmarks of `noise` mm (standard
+    deviation along each axis). The scan has more vertices than the model: the middles of edges too.
     """
-    draw = np.random.default_rng(seed)
-    truth = model.reconstruct(draw.normal(size=len(model.variances)) * np.sqrt(model.variances))
-    axis = draw.normal(size=3)
-    turn = np.radians(30 * draw.random()) * axis / np.linalg.norm(axis)
-    scale, place = float(np.exp(draw.normal(0, 1))), 300 * draw.normal(size=3)
-    pose = Similarity(Rotation.from_rotvec(turn).as_matrix(), scale, place)
-    middle = truth[draw.integers(len(truth))]
+    rng = np.random.default_rng(seed)
+    truth = model.reconstruct(rng.normal(size=len(model.variances)) * np.sqrt(model.variances))
+    axis = rng.normal(size=3)
+    rotation = np.radians(30 * rng.random()) * axis / np.linalg.norm(axis)
+    scale, place = float(np.exp(rng.normal(0, 1))), 300 * rng.normal(size=3)
+    pose = Similarity(Rotation.from_rotvec(rotation).as_matrix(), scale, place)
+    middle = truth[rng.integers(len(truth))]
     distance = np.linalg.norm(truth - middle, axis=1)
     present = distance >= np.quantile(distance, missing) if missing else distance >= 0
-    points, triangles = _remeshed(truth, model.triangles[present[model.triangles].all(1)])
-    wrong = draw.random(len(points)) < outliers
-    points[wrong] += 20 * draw.normal(size=(wrong.sum(), 3))
-    marks = {
-        name: pose(truth[vertex] + noise * draw.normal(size=3))
+    points, triangles = _remesh(truth, model.triangles[present[model.triangles].all(1)])
+    wrong = rng.random(len(points)) < outliers
+    points[wrong] += 20 * rng.normal(size=(wrong.sum(), 3))
+    landmarks = {
+        name: pose(truth[vertex] + noise * rng.normal(size=3))
         for name, vertex in model.landmarks.items()
     }
-    return Case(Mesh(pose(points), triangles, name="a made scan"), marks, pose, truth, present)
+    return Case(Mesh(pose(points), triangles, name="a made scan"), landmarks, pose, truth, present)
 
 
-def _remeshed(vertices: np.ndarray, triangles: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """The same surface with its edges' middles as further vertices, pushed off the model's own."""
+def _remesh(vertices: np.ndarray, triangles: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Add the middles of edges as vertices, and remove unused vertices."""
     points, finer = trimesh.remesh.subdivide(vertices, triangles)
     used, index = np.unique(finer, return_inverse=True)
     return points[used], index.reshape(-1, 3)
 
 
-def recovery(faces: int = FACES, vertices: int = FACE_VERTICES, modes: int = MODES) -> Results:
-    """How many of the faces end within 1 mm RMS of the surface that was present."""
-    model = big_model(vertices, modes)
+def measure_recovery(
+    faces: int = FACES, vertices: int = FACE_VERTICES, modes: int = MODES
+) -> Results:
+    """Measure the share of faces that are fitted to within 1 mm RMS of the true surface."""
+    model = make_big_model(vertices, modes)
     found = [
-        (one := case(model, seed)).error(register(model, one.scan, one.landmarks), model.triangles)
+        (one := make_case(model, seed)).measure_error(
+            register(model, one.scan, one.landmarks), model.triangles
+        )
         for seed in range(faces)
     ]
     errors, apart = np.array(found).T
@@ -199,53 +206,53 @@ def recovery(faces: int = FACES, vertices: int = FACE_VERTICES, modes: int = MOD
     }
 
 
-def evaluations(vertices: int = VERTICES, modes: int = MODES, repeats: int = 50) -> Results:
-    """One residual-and-gradient evaluation beside building A and solving it, in one process."""
-    model = big_model(vertices, modes)
-    one = case(model, 0, missing=0)
+def measure_evaluation(vertices: int = VERTICES, modes: int = MODES, repeats: int = 50) -> Results:
+    """Compare one evaluation of Equation 8 with building A of Equation 6 and solving it."""
+    model = make_big_model(vertices, modes)
+    one = make_case(model, 0, missing=0)
     points = one.pose(one.truth)
     start = time.perf_counter()
     moments = compute_moments(model.basis, model.mean.astype(np.float64), points)
-    gathered = time.perf_counter() - start
-    turn, scale = Rotation.from_rotvec([0.1, 0.2, 0.3]).as_matrix(), one.pose.scale
+    moments_s = time.perf_counter() - start
+    rotation, scale = Rotation.from_rotvec([0.1, 0.2, 0.3]).as_matrix(), one.pose.scale
     with_prior, free = (
         SeparableObjective(moments, model.variances, weight) for weight in (1e-6, 0.0)
     )
-    free(turn, scale)
+    free(rotation, scale)
     seconds = {
-        "eval": least(lambda: with_prior(turn, scale), repeats),
-        "eval_free": least(lambda: free(turn, scale), repeats),
-        "lstsq": least(lambda: plain(model, points, turn, scale), 2),
+        "eval": time_least(lambda: with_prior(rotation, scale), repeats),
+        "eval_free": time_least(lambda: free(rotation, scale), repeats),
+        "lstsq": time_least(lambda: solve_equation_6(model, points, rotation, scale), 2),
     }
-    alpha, value = plain(model, points, turn, scale)
-    ours = free(turn, scale)
+    alpha, value = solve_equation_6(model, points, rotation, scale)
+    ours = free(rotation, scale)
     return {
         "eval_ms": 1e3 * seconds["eval"],
         "eval_free_ms": 1e3 * seconds["eval_free"],
         "speedup_vs_lstsq": seconds["lstsq"] / seconds["eval"],
-        "gather_ms": 1e3 * gathered,
-        "speedup_with_gather": seconds["lstsq"] / (seconds["eval"] + gathered),
+        "gather_ms": 1e3 * moments_s,
+        "speedup_with_gather": seconds["lstsq"] / (seconds["eval"] + moments_s),
         "lstsq_s": seconds["lstsq"],
         "difference": abs(ours.value - value) / value,
         "alpha_difference": float(np.abs(ours.alpha - alpha).max() / np.abs(alpha).max()),
     }
 
 
-def plain(
-    model: ShapeModel, points: np.ndarray, turn: np.ndarray, scale: float
+def solve_equation_6(
+    model: ShapeModel, points: np.ndarray, rotation: np.ndarray, scale: float
 ) -> tuple[np.ndarray, float]:
-    """Alpha and objective of equation 6, A built and solved by the normal equations."""
+    """Solve Equation 6 of Alotaibi & Smith 2017 with the matrix A: alpha and the objective."""
     count, modes = len(points), len(model.basis)
     a = np.zeros((3 * count, modes + 3))
-    a[:, :modes] = (scale * model.basis.astype(np.float64) @ turn.T).reshape(modes, -1).T
+    a[:, :modes] = (scale * model.basis.astype(np.float64) @ rotation.T).reshape(modes, -1).T
     a[:, modes:] = np.tile(np.eye(3), (count, 1))
-    y = (points - scale * model.mean.astype(np.float64) @ turn.T).ravel()
+    y = (points - scale * model.mean.astype(np.float64) @ rotation.T).ravel()
     solution, squared, *_ = np.linalg.lstsq(a, y, rcond=None)
     return solution[:modes], float(squared[0])
 
 
-def least(action: Callable[[], object], repeats: int) -> float:
-    """The least time of an action, in seconds."""
+def time_least(action: Callable[[], object], repeats: int) -> float:
+    """Measure the least time of an action, in seconds."""
     times = []
     for _ in range(repeats):
         start = time.perf_counter()
@@ -254,16 +261,18 @@ def least(action: Callable[[], object], repeats: int) -> float:
     return min(times)
 
 
-def whole_fit(vertices: int = VERTICES, modes: int = MODES, target: int = TARGET) -> Results:
-    """The trimmed fit of the whole model to a scan of about `target` vertices."""
-    model = big_model(vertices, modes)
-    one = _thinned(case(model, 1), target)
+def measure_whole_fit(
+    vertices: int = VERTICES, modes: int = MODES, target: int = TARGET
+) -> Results:
+    """Measure the trimmed fit of the whole model to a scan of about `target` vertices."""
+    model = make_big_model(vertices, modes)
+    one = _crop_case(make_case(model, 1), target)
     seconds, found = np.inf, None
     for _ in range(3):
         start = time.perf_counter()
         found = register(model, one.scan, one.landmarks)
         seconds = min(seconds, time.perf_counter() - start)
-    error, apart = one.error(found, model.triangles)
+    error, apart = one.measure_error(found, model.triangles)
     return {
         "fit_s": seconds,
         "target_vertices": len(one.scan.vertices),
@@ -274,8 +283,8 @@ def whole_fit(vertices: int = VERTICES, modes: int = MODES, target: int = TARGET
     }
 
 
-def _thinned(one: Case, target: int) -> Case:
-    """The scan with its rearmost triangles cut off until about `target` vertices are left."""
+def _crop_case(one: Case, target: int) -> Case:
+    """Cut off the scan's rearmost triangles until about `target` vertices are left."""
     ahead = one.pose.apply_inverse(one.scan.vertices)[:, 2]
     cut = np.sort(ahead)[max(len(ahead) - target, 0)]
     triangles = one.scan.triangles[(ahead >= cut)[one.scan.triangles].all(1)]
@@ -285,31 +294,31 @@ def _thinned(one: Case, target: int) -> Case:
     return Case(scan, one.landmarks, one.pose, one.truth, one.present & (one.truth[:, 2] > gone))
 
 
-def beside_nricp(vertices: int = RIVAL_VERTICES, modes: int = 60) -> Results:
-    """The same pair fitted by us and by trimesh's nricp_amberg, at a size that it can finish.
+def compare_with_nricp(vertices: int = RIVAL_VERTICES, modes: int = 60) -> Results:
+    """Compare with trimesh's nricp_amberg at a size that it can finish.
 
-    It is given the scan in the model's frame by the landmarks' similarity, as its users would.
+    It gets the scan in the model's frame, by the similarity transform of the landmarks.
     """
-    model = big_model(vertices, modes)
-    one = case(model, 2)
+    model = make_big_model(vertices, modes)
+    one = make_case(model, 2)
     start = time.perf_counter()
-    ours = one.error(register(model, one.scan, one.landmarks), model.triangles)
+    ours = one.measure_error(register(model, one.scan, one.landmarks), model.triangles)
     seconds = time.perf_counter() - start
     names = sorted(model.landmarks)
-    marks = np.stack([one.landmarks[name] for name in names])
+    landmarks = np.stack([one.landmarks[name] for name in names])
     rows = [model.landmarks[name] for name in names]
-    pose = fit_similarity(model.mean[rows].astype(np.float64), marks)
+    pose = fit_similarity(model.mean[rows].astype(np.float64), landmarks)
     source = trimesh.Trimesh(model.mean, model.triangles, process=False)
     target = trimesh.Trimesh(
         pose.apply_inverse(one.scan.vertices), one.scan.triangles, process=False
     )
     start = time.perf_counter()
     moved = trimesh.registration.nricp_amberg(
-        source, target, rows, pose.apply_inverse(marks), use_faces=False
+        source, target, rows, pose.apply_inverse(landmarks), use_faces=False
     )
     rival = time.perf_counter() - start
     found = Registration(pose, np.zeros(0), pose(moved), np.zeros(0), np.zeros(0, bool), 1.0, ())
-    theirs = one.error(found, model.triangles)
+    theirs = one.measure_error(found, model.triangles)
     return {
         "vertices": vertices,
         "speedup": rival / seconds,
@@ -322,8 +331,8 @@ def beside_nricp(vertices: int = RIVAL_VERTICES, modes: int = 60) -> Results:
     }
 
 
-def in_own_process(expression: str) -> Results:
-    """A measurement in a process of its own, whose peak of memory is nobody else's."""
+def run_in_own_process(expression: str) -> Results:
+    """Measure in a separate process, so that its peak memory is its own."""
     code = f"import json; from benchmarks.fit import *; print(json.dumps({expression}))"
     root = Path(__file__).parents[1]
     done = subprocess.run(
@@ -334,16 +343,16 @@ def in_own_process(expression: str) -> Results:
 
 
 def measure() -> Results:
-    """Every figure, by name."""
-    fit = in_own_process("whole_fit()")
+    """Measure every figure, by name."""
+    fit = run_in_own_process("measure_whole_fit()")
     return {
-        **evaluations(),
+        **measure_evaluation(),
         "fit_s": fit.pop("fit_s"),
         "peak_gb": fit.pop("peak_gb"),
-        "recovery": (found := recovery())["share_within_1mm"],
+        "recovery": (found := measure_recovery())["share_within_1mm"],
         "fit": fit,
         "recovery_detail": found,
-        "beside_nricp": beside_nricp(),
+        "beside_nricp": compare_with_nricp(),
     }
 
 

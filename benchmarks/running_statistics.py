@@ -1,4 +1,4 @@
-"""Sums from which errors and correlations follow, so that no pixel has to be kept."""
+"""Errors and correlations from running sums, so that no pixel has to be kept."""
 
 import torch
 from torch import Tensor
@@ -8,17 +8,17 @@ NEGLIGIBLE = 1e-12
 
 
 class RunningStatistics:
-    """Of a guess and the truth: number, sums, squares, products and errors, in float64.
+    """Statistics of an estimate and the truth, from sums in float64.
 
-    Every figure is None where nothing was added, or where it is not defined.
+    A figure is None if nothing was added, or if it is not defined.
     """
 
     def __init__(self) -> None:
         self.sums = torch.zeros(7, dtype=torch.float64)
 
-    def add(self, guess: Tensor, truth: Tensor) -> None:
-        """Count in two tensors of one shape."""
-        x, y = (value.reshape(-1).to(torch.float64) for value in (guess, truth))
+    def add(self, estimate: Tensor, truth: Tensor) -> None:
+        """Add two tensors of the same shape."""
+        x, y = (value.reshape(-1).to(torch.float64) for value in (estimate, truth))
         error = x - y
         sums = [x.sum(), y.sum(), x @ x, y @ y, x @ y, error @ error]
         self.sums += torch.stack([torch.tensor(float(len(x)), dtype=torch.float64), *sums])
@@ -36,7 +36,7 @@ class RunningStatistics:
 
     @property
     def r(self) -> float | None:
-        """Pearson's correlation; a constant has none."""
+        """Pearson's correlation, None for a constant."""
         count, x, y, xx, yy, xy = (self.sums[:6] / self.sums[0].clamp_min(1)).tolist()
         spread = xx - x * x, yy - y * y
         if not count or spread[0] <= NEGLIGIBLE * xx or spread[1] <= NEGLIGIBLE * yy:
@@ -45,12 +45,12 @@ class RunningStatistics:
 
     @property
     def line(self) -> tuple[float, float]:
-        """Slope and offset that bring the guess nearest to the truth."""
+        """Slope and offset of the least-squares line from the estimate to the truth."""
         _, x, y, xx, _, xy = (self.sums[:6] / self.sums[0]).tolist()
         slope = (xy - x * y) / (xx - x * x)
         return slope, y - slope * x
 
     @property
     def scale(self) -> float:
-        """The factor that brings the guess nearest to the truth."""
+        """Least-squares factor from the estimate to the truth."""
         return (self.sums[5] / self.sums[3]).item()
