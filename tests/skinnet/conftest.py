@@ -1,4 +1,4 @@
-"""Photographs, tiny ONNX files that keep the contract, and seven small people in a stack."""
+"""The astronaut, tiny ONNX files that skinnet can open, and seven small people in a stack."""
 
 import json
 from collections.abc import Callable
@@ -28,7 +28,7 @@ OUTPUTS = {
     "mask": ("probability", 0.0, 1.0),
     "offset": ("linear sRGB", -1.0, 1.0),
 }
-NOTES = {
+METADATA = {
     "format": "1",
     "version": "0.1.0",
     "trained_on": "nothing",
@@ -53,7 +53,7 @@ def astronaut() -> np.ndarray:
 
 @pytest.fixture(scope="session")
 def model_file(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """An encoder that calls bright red pixels skin, with its decoder beside it."""
+    """An encoder that takes bright red pixels as skin, and its decoder."""
     return save_models(tmp_path_factory.mktemp("models") / "tiny.onnx")
 
 
@@ -65,22 +65,22 @@ def skinless_file(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 @pytest.fixture
 def save_model(tmp_path: Path) -> SaveModel:
-    """Writes the two files under a name, with metadata changed (None: left out)."""
+    """Writes both files with changed metadata; entries that are None are left out."""
 
-    def save(name: str = "changed.onnx", **notes: str | None) -> Path:
-        return save_models(tmp_path / name, **notes)
+    def save(name: str = "changed.onnx", **metadata: str | None) -> Path:
+        return save_models(tmp_path / name, **metadata)
 
     return save
 
 
-def save_models(path: Path, skin_from: float = 0.5, **notes: str | None) -> Path:
+def save_models(path: Path, skin_from: float = 0.5, **metadata: str | None) -> Path:
     for kind, graph, target in (
         ("encoder", encoder_graph(skin_from), path),
         ("decoder", decoder_graph(), path.with_name(f"{path.stem}.decoder.onnx")),
     ):
         opset = helper.make_opsetid("", 20)
         model = helper.make_model(graph, opset_imports=[opset], ir_version=10)
-        merged: dict[str, str | None] = {"kind": kind} | NOTES | notes
+        merged: dict[str, str | None] = {"kind": kind} | METADATA | metadata
         kept = {f"skinnet.{key}": value for key, value in merged.items() if value is not None}
         helper.set_model_props(model, kept)
         onnx.checker.check_model(model)
@@ -89,7 +89,7 @@ def save_models(path: Path, skin_from: float = 0.5, **notes: str | None) -> Path
 
 
 def encoder_graph(skin_from: float) -> onnx.GraphProto:
-    """Maps that are simple functions of a pixel, and constant globals."""
+    """Maps that are simple functions of a pixel; light and camera are constants."""
     nodes = [
         helper.make_node("Cast", ["image"], ["float"], to=TensorProto.FLOAT),
         helper.make_node("Div", ["float", "white"], ["unit"]),
@@ -102,7 +102,7 @@ def encoder_graph(skin_from: float) -> onnx.GraphProto:
         helper.make_node("Add", ["grey", "fifth"], ["shading"]),
         helper.make_node("Mul", ["hemoglobin", "fifth"], ["specular"]),
         helper.make_node("Mul", ["unit", "fifth"], ["offset"]),
-        *(helper.make_node("Identity", [f"the_{name}"], [name]) for name in GLOBALS),
+        *(helper.make_node("Identity", [f"the_{name}"], [name]) for name in CAPTURE),
     ]
     constants = {
         "white": np.float32(255),
@@ -110,13 +110,13 @@ def encoder_graph(skin_from: float) -> onnx.GraphProto:
         "first": np.array(0),
         "skin_from": np.float32(skin_from),
         "fifth": np.float32(0.2),
-    } | {f"the_{name}": value for name, value in GLOBALS.items()}
-    outputs = [value_info(name) for name in (*OUTPUTS, *GLOBALS)]
+    } | {f"the_{name}": value for name, value in CAPTURE.items()}
+    outputs = [value_info(name) for name in (*OUTPUTS, *CAPTURE)]
     image = helper.make_tensor_value_info("image", TensorProto.UINT8, ["batch", "h", "w", 3])
     return helper.make_graph(nodes, "encoder", [image], outputs, initializers(constants))
 
 
-GLOBALS = {
+CAPTURE = {
     "light": np.array([[0.75, 0.25]], np.float32),
     "temperature": np.array([6504], np.float32),
     "camera": np.array([[0.5, -0.5, 0.0]], np.float32),
@@ -125,7 +125,7 @@ GLOBALS = {
 
 
 def decoder_graph() -> onnx.GraphProto:
-    """A grey absorbed by melanin, and more in green by blood: no physics, but the right signs."""
+    """Absorption by melanin, and by blood most in green: signs are right, values are not."""
     nodes = [
         helper.make_node("Unsqueeze", [name, "last"], [f"{name}3"])
         for name in MAPS
@@ -148,7 +148,7 @@ def decoder_graph() -> onnx.GraphProto:
         "zero": np.float32(0),
         "one": np.float32(1),
     }
-    names = [name for name in (*OUTPUTS, *GLOBALS) if name != "mask"]
+    names = [name for name in (*OUTPUTS, *CAPTURE) if name != "mask"]
     image = helper.make_tensor_value_info("image", TensorProto.FLOAT, ["batch", "h", "w", 3])
     return helper.make_graph(
         nodes, "decoder", [value_info(n) for n in names], [image], initializers(constants)
@@ -157,7 +157,7 @@ def decoder_graph() -> onnx.GraphProto:
 
 def value_info(name: str) -> onnx.ValueInfoProto:
     axes: dict[str, list[Any]] = {"offset": ["batch", "h", "w", 3], "temperature": ["batch"]}
-    shape = ["batch", f"{name}s"] if name in GLOBALS else ["batch", "h", "w"]
+    shape = ["batch", f"{name}s"] if name in CAPTURE else ["batch", "h", "w"]
     return helper.make_tensor_value_info(name, TensorProto.FLOAT, axes.get(name, shape))
 
 

@@ -89,7 +89,7 @@ def test_json_alone_goes_to_standard_output(
     assert first == json.loads((tmp_path / "out" / "a.json").read_text())
 
 
-def test_no_skin_is_null_and_said(
+def test_no_skin_is_null_and_reported(
     skinless_file: Path, photo: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
     assert main(["predict", str(photo), "--model", str(skinless_file)]) == 0
@@ -142,7 +142,7 @@ def test_a_list_goes_on_after_a_bad_file(
     assert names(tmp_path / "skinmaps") == FILES
 
 
-def test_no_face_names_the_way_on(
+def test_without_a_face_the_option_is_named(
     predict: Predict, tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
     wall = tmp_path / "wall.png"
@@ -167,7 +167,7 @@ def test_standard_input_is_a_photograph(
 
 
 @pytest.mark.parametrize("verb", ["predict", "edit"])
-def test_empty_standard_input_is_said(
+def test_empty_standard_input_is_reported(
     verb: str,
     model_file: Path,
     monkeypatch: pytest.MonkeyPatch,
@@ -181,7 +181,7 @@ def test_empty_standard_input_is_said(
     )
 
 
-def test_a_folder_that_cannot_be_written_is_said(
+def test_a_folder_that_cannot_be_written_is_reported(
     predict: Predict, photo: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
     (tmp_path / "file").write_text("")
@@ -204,7 +204,7 @@ def test_a_file_that_cannot_be_written_takes_the_others_with_it(
 
 
 @pytest.mark.parametrize("verb", ["predict", "edit"])
-def test_a_bad_model_is_said_once(
+def test_a_bad_model_is_reported_once(
     verb: str, photo: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
     (tmp_path / "bad.onnx").write_bytes(b"bad")

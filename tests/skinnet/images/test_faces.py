@@ -10,7 +10,7 @@ from skinnet.images import Box, as_photo, find_face, frame_head, read_photo, res
 FACE = Box(176, 71, 268, 163)
 
 
-def overlap(a: Box, b: Box) -> float:
+def compute_iou(a: Box, b: Box) -> float:
     width = min(a.right, b.right) - max(a.left, b.left)
     height = min(a.bottom, b.bottom) - max(a.top, b.top)
     shared = max(width, 0) * max(height, 0)
@@ -20,7 +20,7 @@ def overlap(a: Box, b: Box) -> float:
 def test_the_astronaut_is_found(astronaut: np.ndarray) -> None:
     face = find_face(astronaut)
     assert face is not None
-    assert overlap(face, FACE) > 0.7
+    assert compute_iou(face, FACE) > 0.7
 
 
 @pytest.mark.parametrize("factor", [0.5, 4])
@@ -28,7 +28,7 @@ def test_a_face_is_found_at_any_size(astronaut: np.ndarray, factor: float) -> No
     side = round(512 * factor)
     face = find_face(resize(astronaut, side, side))
     assert face is not None
-    assert overlap(face, Box(*(round(value * factor) for value in FACE))) > 0.6
+    assert compute_iou(face, Box(*(round(value * factor) for value in FACE))) > 0.6
 
 
 def test_the_largest_central_face_is_taken(astronaut: np.ndarray) -> None:
@@ -37,7 +37,7 @@ def test_the_largest_central_face_is_taken(astronaut: np.ndarray) -> None:
     scene[:256, :256], scene[:, 256:] = small, astronaut
     face = find_face(scene)
     assert face is not None
-    assert overlap(face, Box(FACE.left + 256, FACE.top, FACE.right + 256, FACE.bottom)) > 0.6
+    assert compute_iou(face, Box(FACE.left + 256, FACE.top, FACE.right + 256, FACE.bottom)) > 0.6
 
 
 @pytest.mark.parametrize("shape", [(1, 1), (3, 900), (40, 30), (300, 400)])
@@ -46,12 +46,12 @@ def test_no_face_is_none(shape: tuple[int, int]) -> None:
 
 
 @pytest.mark.parametrize("name", ["coffee", "rocket", "brick", "gravel", "coins", "moon"])
-def test_no_face_is_seen_in_things(name: str) -> None:
+def test_no_face_is_found_in_things(name: str) -> None:
     assert find_face(as_photo(getattr(data, name)())) is None
 
 
 @pytest.mark.parametrize("side", [200, 1000])
-def test_no_face_is_seen_in_noise(side: int) -> None:
+def test_no_face_is_found_in_noise(side: int) -> None:
     noise = np.random.default_rng(0).integers(0, 255, (side, side, 3), np.uint8)
     assert find_face(noise) is None
 
@@ -75,5 +75,5 @@ def test_portraits_are_found(shared_data: Path) -> None:
     for row in rows:
         x, y, width, height = (int(row[f"face_{key}"]) for key in "xywh")
         face = find_face(read_photo(folder / row["file"]))
-        found += face is not None and overlap(face, Box(x, y, x + width, y + height)) > 0.4
+        found += face is not None and compute_iou(face, Box(x, y, x + width, y + height)) > 0.4
     assert found >= 0.95 * len(rows)

@@ -30,7 +30,7 @@ def test_missing_model_files_are_named(save_model: SaveModel, tmp_path: Path) ->
 
 
 @pytest.mark.parametrize(
-    ("notes", "words"),
+    ("metadata", "words"),
     [
         ({"kind": None}, "is an ONNX file, but not one of skinnet's"),
         ({"format": "2"}, "has format 2, and this skinnet reads format 1; export it again"),
@@ -44,10 +44,10 @@ def test_missing_model_files_are_named(save_model: SaveModel, tmp_path: Path) ->
     ],
 )
 def test_other_metadata_are_refused(
-    save_model: SaveModel, notes: dict[str, str | None], words: str
+    save_model: SaveModel, metadata: dict[str, str | None], words: str
 ) -> None:
     with pytest.raises(InputError, match=words):
-        Decomposer(save_model(**notes)).load()
+        Decomposer(save_model(**metadata)).load()
 
 
 def test_a_file_with_other_outputs_is_refused(tmp_path: Path) -> None:
