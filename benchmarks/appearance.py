@@ -1,8 +1,8 @@
-"""What building and measuring the statistical models costs, on synthetic people.
+"""The cost of building and measuring the statistical models, on synthetic people.
 
 `python -m benchmarks.appearance [--json]`. 25 people at 1024 x 1024: both models from a stack on
-disk (`pca_s`), then their measures, none of which fits a model again. Each figure of memory is the
-resident peak of a process of its own, torch and all (Linux only).
+disk (`pca_s`), then their measures, which fit no model again. Memory is the resident peak of a
+separate process, which includes torch (Linux only).
 """
 
 import json
@@ -21,13 +21,16 @@ import torch.nn.functional as F
 from jaxtyping import Float
 
 from benchmarks.report import Results, main
-from skinnet.appearance.colour import SkinColour
-from skinnet.appearance.hybrid import HybridModel
-from skinnet.appearance.linear import LinearModel
-from skinnet.appearance.measures import measure
-from skinnet.appearance.skin_texture import SkinTexture
-from skinnet.appearance.stack import SubjectStack, open_stack
-from skinnet.appearance.stack_writer import write_stack
+from skinnet.appearance import (
+    HybridModel,
+    LinearModel,
+    SkinColour,
+    SkinTexture,
+    SubjectStack,
+    measure,
+    open_stack,
+    write_stack,
+)
 
 PEOPLE, SIZE = 25, 1024
 MANY, SMALL = 200, 512
@@ -37,8 +40,8 @@ FACE = 0.45
 """Half the width of the round face in a texture of width 1."""
 
 
-def person(size: int, seed: int) -> SkinTexture:
-    """Smooth maps in the range of skin: a level of each pigment, regions, spots, small offsets."""
+def make_person(size: int, seed: int) -> SkinTexture:
+    """Make smooth maps in the range of skin: levels, regions, spots and small offsets."""
     rng = np.random.default_rng(seed)
     level = rng.standard_normal(2)
     f_mel = 0.05 * np.exp(0.7 * level[0] + _noise(rng, size, {3: 0.25, 9: 0.15, 65: 0.05}))
@@ -53,7 +56,7 @@ def person(size: int, seed: int) -> SkinTexture:
 def _noise(
     rng: np.random.Generator, size: int, nodes: dict[int, float]
 ) -> Float[np.ndarray, "size size"]:
-    """Sum of cubic surfaces through normal numbers on grids of so many nodes a side."""
+    """Sum cubic surfaces through normal numbers on grids of so many nodes a side."""
     total = np.zeros((size, size))
     for count, deviation in nodes.items():
         grid = torch.from_numpy(deviation * rng.standard_normal((1, 1, count, count)))
@@ -61,14 +64,14 @@ def _noise(
     return total
 
 
-def people(folder: Path, count: int, size: int) -> SubjectStack:
-    """A stack of persons."""
-    makers = {f"person {seed}": partial(person, size, seed) for seed in range(count)}
+def write_people(folder: Path, count: int, size: int) -> SubjectStack:
+    """Write a stack of people."""
+    makers = {f"person {seed}": partial(make_person, size, seed) for seed in range(count)}
     return write_stack(folder, makers, SkinColour(), "synthetic people")
 
 
-def study(folder: str, measured: bool) -> Results:
-    """Seconds of each step on a stack, and this process' resident peak in GB."""
+def measure_process(folder: str, measured: bool) -> Results:
+    """Measure the seconds of each step on a stack, and the resident peak of this process in GB."""
     stack = open_stack(Path(folder))
     seconds: dict[str, float] = {}
     hybrid = _timed(seconds, "hybrid", lambda: HybridModel.fit(stack))
@@ -92,11 +95,11 @@ def _peak() -> float:
     return next(int(line.split()[1]) for line in lines if line.startswith("VmHWM")) / 1024**2
 
 
-def in_own_process(folder: Path, measured: bool) -> Results:
-    """`study` where nothing else counts towards the peak."""
+def measure_separately(folder: Path, measured: bool) -> Results:
+    """Run `measure_process` in a separate process, whose peak is its own."""
     code = (
-        "import json; from benchmarks.appearance import study; "
-        f"print(json.dumps(study({str(folder)!r}, {measured})))"
+        "import json; from benchmarks.appearance import measure_process; "
+        f"print(json.dumps(measure_process({str(folder)!r}, {measured})))"
     )
     root = Path(__file__).parents[1]
     done = subprocess.run(
@@ -109,24 +112,24 @@ def in_own_process(folder: Path, measured: bool) -> Results:
 def measure_costs(
     count: int = PEOPLE, size: int = SIZE, many: int = MANY, small: int = SMALL
 ) -> Results:
-    """Every figure, by name."""
+    """Measure every figure."""
     with tempfile.TemporaryDirectory() as folder:
         first, second = Path(folder, "first"), Path(folder, "second")
         start = time.perf_counter()
-        people(first, count, size)
-        spooled = time.perf_counter() - start
-        few = in_own_process(first, measured=True)
-        people(second, many, small)
-        crowd = in_own_process(second, measured=False)
+        write_people(first, count, size)
+        written = time.perf_counter() - start
+        few = measure_separately(first, measured=True)
+        write_people(second, many, small)
+        crowd = measure_separately(second, measured=False)
     return {
         "pca_s": few["seconds"]["hybrid"] + few["seconds"]["linear"],
         "fit_peak_gb": few["fit_peak_gb"],
         "peak_gb": few["peak_gb"],
-        "spool_s": spooled,
+        "write_s": written,
         "seconds": few["seconds"],
         "many": {"people": many, "size": small, **crowd},
     }
 
 
 if __name__ == "__main__":
-    main(measure_costs, "What the statistical models of appearance cost to build and to measure.")
+    main(measure_costs, "The cost of building and measuring the statistical models of appearance.")

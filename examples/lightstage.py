@@ -1,11 +1,11 @@
 """25 synthetic people in a synthetic lightstage, through the whole classic pipeline.
 
-`python -m examples.lightstage [-o FOLDER] [--people 25] [--texels 1024]` needs no data. Skins are
-drawn over the whole range from palest to darkest and seen under CIE's LED-B3 by a Nikon D200
-through a filter that mixes colours, as the paper's polariser does (section 4.3). Scans with
-textures and landmarks are written, and the commands are run that anyone would run on real ones:
-maps with the full calibration, then the hybrid, linear and joint models with their measures.
-Because the truth is known, the errors of transform and pigments are printed.
+`python -m examples.lightstage [-o FOLDER] [--people 25] [--texels 1024]` needs no data. Melanin
+covers the whole range from palest to darkest. The skins are lit by CIE's LED-B3 and seen by a Nikon
+D200 through a filter that mixes colours, as the paper's polariser does (section 4.3). The script
+writes scans with textures and landmarks and runs the commands that real scans need: maps with the
+full calibration, then the hybrid, linear and joint models with their measures. The truth is known,
+so the errors of transform and pigments are printed.
 """
 
 import argparse
@@ -17,8 +17,7 @@ import numpy as np
 import torch
 import torch.nn.functional as F
 
-from skinnet.appearance.colour import SkinColour
-from skinnet.appearance.maps_file import load_maps
+from skinnet.appearance import SkinColour, load_maps
 from skinnet.cli import main as skinnet
 from skinnet.images import linear_to_srgb, to_uint8
 from skinnet.mesh import Mesh, write_mesh
@@ -31,18 +30,18 @@ from train.synthetic.scene_sampling import sample_scene
 
 LIGHT, CAMERA = "LED-B3", "Nikon D200"
 FILTER = np.array([[0.80, 0.05, 0.01], [0.03, 0.86, 0.04], [0.01, 0.06, 0.92]])
-"""What the polariser does to the model's colours; unknown to the commands."""
+"""Colour transform of the polariser, which the commands do not know."""
 
 PIGMENTS = ("f_mel", "f_blood")
 
 
-def person(number: int, people: int, texels: int) -> dict[str, np.ndarray]:
-    """Pigments and what is not skin over the chart, [texels, texels]."""
+def paint_person(number: int, people: int, texels: int) -> dict[str, np.ndarray]:
+    """Paint one person's pigments and features that are not skin, [texels, texels]."""
     rng = np.random.default_rng([25, number])
     scene = sample_scene(rng, make_blank_cast(8).to_buffers())
-    # Melanin evenly over its range, in an order that is not that of the numbers.
+    # Melanin covers its range evenly, in another order than the numbers.
     f_mel = 0.012 * 16 ** ((7 * number % people + rng.random()) / people)
-    face = map_tensors(lambda value: value[None], _bare(scene.face, f_mel))
+    face = map_tensors(lambda value: value[None], _simplify(scene.face, f_mel))
     size = (texels, texels)
     charts = paint_face(face)
     painted = FaceCharts(*(F.interpolate(part, size, mode="bilinear") for part in charts))
@@ -57,8 +56,8 @@ def person(number: int, people: int, texels: int) -> dict[str, np.ndarray]:
     }
 
 
-def _bare(face: FaceParameters, f_mel: float) -> FaceParameters:
-    """A face of that melanin without beard and make-up, with thin brows."""
+def _simplify(face: FaceParameters, f_mel: float) -> FaceParameters:
+    """Remove beard and make-up, thin the brows, and set the melanin."""
     melanin = face.skin.melanin._replace(fraction=torch.tensor(f_mel))
     zero = torch.tensor(0.0)
     beard = face.hair.beard._replace(beard=zero, stubble=zero)
@@ -70,7 +69,7 @@ def _bare(face: FaceParameters, f_mel: float) -> FaceParameters:
 
 
 def write_person(path: Path, truth: dict[str, np.ndarray], colour: SkinColour) -> None:
-    """A scan of that person as OBJ with PNG and landmarks, and the true maps as .npz."""
+    """Write a scan of that person as OBJ with PNG and landmarks, and the true maps as .npz."""
     model = load_shape_model()
     alpha = truth["variates"][: len(model.variances)] * np.sqrt(model.variances)
     mesh = model.build_mesh(alpha)
@@ -94,7 +93,7 @@ def run(*words: object) -> None:
 
 
 def report(scans: list[Path], maps: Path) -> None:
-    """The errors of the transform and of the pigments."""
+    """Print the errors of the transform and of the pigments."""
     found = np.array(json.loads((maps / f"{scans[0].stem}_maps.json").read_text())["transform"])
     error = np.linalg.norm(found - FILTER) / np.linalg.norm(FILTER)
     print(f"transform: relative error {error:.4f}; found {found.round(3).tolist()}")
@@ -111,7 +110,7 @@ def report(scans: list[Path], maps: Path) -> None:
 
 
 def main() -> None:
-    """Draw people, write scans, run the commands."""
+    """Paint people, write their scans, run the commands."""
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("-o", "--output", type=Path, default=Path("runs/lightstage"))
     parser.add_argument("--people", type=int, default=25)
@@ -122,7 +121,7 @@ def main() -> None:
     scans = [options.output / f"person_{number:02}.obj" for number in range(options.people)]
     for number, scan in enumerate(scans):
         if not scan.is_file():
-            write_person(scan, person(number, options.people, options.texels), colour)
+            write_person(scan, paint_person(number, options.people, options.texels), colour)
     light = ["--colour.light", LIGHT, "--colour.camera", CAMERA, "--colour.calibration", "full"]
     maps = options.output / "skinmaps"
     run("maps", *scans, *light, f"--warp.size={options.texels}", "--warp.own_uv=true", "-o", maps)

@@ -1,11 +1,11 @@
 """63 portraits in one frame, read as skin, and both models of appearance built on them.
 
 `python -m examples.london PORTRAITS [-o FOLDER]`, with the folder of the Face Research Lab London
-Set (DeBruine and Jones, CC BY 4.0): NNN_03.jpg and NNN_03.tem with 189 landmarks each. The
-soft, even light of that studio stands in for a lightstage: shading and gloss that it leaves count
-as pigment here. Portraits are warped to their mean landmarks, brightened by one common factor,
+Set (DeBruine and Jones, CC BY 4.0): NNN_03.jpg and NNN_03.tem with 189 landmarks each. The soft,
+even light of that studio stands in for a lightstage; its remaining shading and gloss are read as
+pigment here. Portraits are warped to their mean landmarks, multiplied by one common factor,
 inverted under D65 and the mean camera, and compared as in Figure 8. The full calibration refuses
-these pictures: with a tone curve and shading in them, no linear transform brings skin near. With
+these pictures: they contain shading and a tone curve, which no linear transform can undo. With
 `--skins 200` so many skins are sampled from the hybrid model for synthetic faces, as skins.npz. The
 pictures show real people and stay out of the project.
 """
@@ -20,12 +20,10 @@ from scipy.spatial import Delaunay
 from skimage.draw import polygon2mask, polygon_perimeter
 from skimage.morphology import dilation, disk, erosion
 
-from skinnet.appearance.hybrid import HybridModel
-from skinnet.appearance.maps_file import save_maps
+from skinnet.appearance import HybridModel, save_maps
 from skinnet.cli import main as skinnet
 from skinnet.images import read_photo, srgb_to_linear
-from skinnet.pipeline.calibrate import ColourSettings
-from skinnet.pipeline.texture_inversion import invert_texture
+from skinnet.pipeline import ColourSettings, invert_texture
 from skinnet.shape import compute_chart_angles
 from skinnet.texture import TextureSpace, WarpedTexture, warp_texture
 from train.synthetic.model_skins import save_model_skins
@@ -61,17 +59,17 @@ PLACES = (
 faces' chart, which describes a place by its direction from the middle of a head."""
 
 FRONTAL = 1.15
-"""Azimuth in radians beyond which a portrait from ahead shows nothing."""
+"""Azimuth in radians beyond which a frontal portrait shows nothing."""
 
 
-def landmarks(path: Path) -> np.ndarray:
-    """Points [189, 2] of a .tem file, in pixels."""
+def read_points(path: Path) -> np.ndarray:
+    """Read the points [189, 2] of a .tem file, in pixels."""
     lines = path.read_text().split("\n")
     return np.array([line.split() for line in lines[1 : int(lines[0]) + 1]], float)
 
 
-def frame(points: Sequence[np.ndarray]) -> np.ndarray:
-    """The mean landmarks in texture coordinates, after the portraits' own places and sizes."""
+def average_points(points: Sequence[np.ndarray]) -> np.ndarray:
+    """Average the landmarks in texture coordinates, after aligning each portrait by its eyes."""
     aligned = []
     for one in points:
         eyes = one[[0, 1]]
@@ -82,8 +80,8 @@ def frame(points: Sequence[np.ndarray]) -> np.ndarray:
     return 0.5 + (mean - (low + high) / 2) * (1 - 2 * MARGIN) / (high - low).max()
 
 
-def skin(mean: np.ndarray) -> np.ndarray:
-    """Where there is skin in the frame, a little inside its outline."""
+def mark_skin(mean: np.ndarray) -> np.ndarray:
+    """Mark the skin in the frame, a little inside its outline."""
     rows = SIZE * np.stack([1 - mean[:, 1], mean[:, 0]], 1)
     mask = polygon2mask((SIZE, SIZE), rows[list(OUTLINE)])
     holes = np.any([polygon2mask((SIZE, SIZE), rows[list(hole)]) for hole in HOLES], 0)
@@ -93,16 +91,16 @@ def skin(mean: np.ndarray) -> np.ndarray:
     return erosion(mask, disk(SIZE // 40)) & ~dilation(holes, disk(SIZE // 100))
 
 
-def textures(folder: Path) -> tuple[list[Path], list[np.ndarray], np.ndarray]:
-    """The portraits' linear RGB in the common frame, and where it is skin."""
+def warp_portraits(folder: Path) -> tuple[list[Path], list[np.ndarray], np.ndarray]:
+    """Warp the portraits' linear RGB into the common frame; mark where it is skin."""
     files = sorted(folder.glob("*.tem"))
-    points = [landmarks(file) for file in files]
-    mean = frame(points)
+    points = [read_points(file) for file in files]
+    mean = average_points(points)
     # The set's outer points lie on hair and neck: triangles are those of the outline's inside.
     used = np.unique(np.concatenate([OUTLINE, np.arange(109)]))
     triangles = used[Delaunay(mean[used]).simplices]
     space = TextureSpace(mean, triangles, SIZE)
-    mask = skin(mean) & space.mask
+    mask = mark_skin(mean) & space.mask
     images = []
     for file, one in zip(files, points, strict=True):
         photo = read_photo(file.with_suffix(".jpg"))
@@ -139,7 +137,7 @@ def _ahead(places: np.ndarray) -> np.ndarray:
 
 def write_skins(portraits: Path, output: Path, count: int) -> None:
     """Sample skins for synthetic faces from the hybrid model in that folder."""
-    mean = frame([landmarks(file) for file in sorted(portraits.glob("*.tem"))])
+    mean = average_points([read_points(file) for file in sorted(portraits.glob("*.tem"))])
     model = HybridModel.load(output / "model" / "hybrid.npz")
     skins = sample_model_skins(model, find_places(mean), count)
     save_model_skins(output / "skins.npz", skins)
@@ -156,7 +154,7 @@ def main() -> None:
     options = parser.parse_args()
     maps = options.output / "maps"
     maps.mkdir(parents=True, exist_ok=True)
-    files, images, mask = textures(options.portraits)
+    files, images, mask = warp_portraits(options.portraits)
     settings = ColourSettings(calibration=options.calibration)
     colours = settings.calibrated([image[mask].astype(np.float64) for image in images])
     rows = zip(files, images, colours.found.exposures, strict=True)

@@ -1,9 +1,9 @@
-"""Two real scans through the whole classic pipeline: fitted, warped, inverted, edited, rendered.
+"""Two real scans through the classic pipeline: fit, warp, inversion, edit, rendering.
 
 `python -m examples.scans DATA [-o FOLDER]`, where DATA holds scans/lps (Lee Perry-Smith,
 Infinite-Realities, CC BY 3.0), scans/james (menpo3d, BSD-3) and models/ict_facekit.npz
-(USC ICT, MIT). It runs the commands that anyone would, and prints them. The pictures show real
-people and stay out of the project.
+(USC ICT, MIT). It prints each command and runs it. The pictures show real people and stay out of
+the project.
 """
 
 import argparse
@@ -14,7 +14,7 @@ from pathlib import Path
 from skinnet.cli import main as skinnet
 
 WHITE = ["--colour.white", "[150, 187, 157]"]
-"""The shaded collar of James' white shirt, in his texture: his picture is not balanced."""
+"""Colour of the shaded collar of James' white shirt; his texture is not white-balanced."""
 
 
 def run(*words: object) -> None:
@@ -27,7 +27,7 @@ def run(*words: object) -> None:
 
 
 def main() -> None:
-    """Maps of both scans, then the edits of Figure 6, seen from a little to the side."""
+    """Make maps of both scans, then the edits of Figure 6, seen a little from the side."""
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("data", type=Path)
     parser.add_argument("-o", "--output", type=Path, default=Path("runs/scans"))

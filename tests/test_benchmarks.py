@@ -109,7 +109,7 @@ def test_the_rival_network_has_four_maps_and_its_globals() -> None:
 @pytest.mark.skipif(sys.platform != "linux", reason="Resident peaks are read from /proc.")
 def test_appearance_reports_its_figures() -> None:
     found = appearance.measure_costs(count=4, size=24, many=6, small=16)
-    assert set(found) == {"pca_s", "fit_peak_gb", "peak_gb", "spool_s", "seconds", "many"}
+    assert set(found) == {"pca_s", "fit_peak_gb", "peak_gb", "write_s", "seconds", "many"}
     steps = {"hybrid", "linear", "measure_hybrid", "measure_linear"}
     assert set(found["seconds"]) == steps
     assert found["many"]["people"] == 6 and set(found["many"]["seconds"]) == {"hybrid", "linear"}

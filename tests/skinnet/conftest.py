@@ -12,7 +12,7 @@ import pytest
 from onnx import TensorProto, helper, numpy_helper
 from skimage import data
 
-from benchmarks.appearance import person
+from benchmarks.appearance import make_person
 from skinnet.appearance.colour import SkinColour
 from skinnet.appearance.skin_texture import SkinTexture
 from skinnet.appearance.stack import SubjectStack
@@ -177,7 +177,7 @@ def colour() -> SkinColour:
 
 @pytest.fixture(scope="session")
 def persons() -> dict[str, Callable[[], SkinTexture]]:
-    return {f"person {seed}": partial(person, SIZE, seed) for seed in range(COUNT)}
+    return {f"person {seed}": partial(make_person, SIZE, seed) for seed in range(COUNT)}
 
 
 @pytest.fixture(scope="session")

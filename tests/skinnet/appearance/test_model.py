@@ -12,7 +12,7 @@ import numpy as np
 import pytest
 import torch
 
-from benchmarks.appearance import person
+from benchmarks.appearance import make_person
 from skinnet.appearance._model import AppearanceModel
 from skinnet.appearance._scales import compute_equal_effect, compute_equal_variance
 from skinnet.appearance.colour import SkinColour
@@ -106,7 +106,7 @@ def test_samples_without_offset_lie_on_the_manifold_of_skin(
     tmp_path: Path, colour: SkinColour
 ) -> None:
     def bare(seed: int) -> SkinTexture:
-        face = person(20, seed)
+        face = make_person(20, seed)
         return replace(face, offset=np.zeros_like(face.offset))
 
     makers = {str(seed): partial(bare, seed) for seed in range(5)}
@@ -179,7 +179,7 @@ def test_more_components_than_subjects_are_refused(stack: SubjectStack) -> None:
 
 def test_a_face_of_another_size_is_refused(model: AppearanceModel) -> None:
     with pytest.raises(InputError, match="person 1 has 32 texels a side and the model 20"):
-        model.project(person(32, 1))
+        model.project(make_person(32, 1))
 
 
 def test_a_face_with_holes_is_projected_by_what_it_has(
@@ -277,7 +277,7 @@ def test_files_cut_short_or_pickled_are_refused(stack: SubjectStack, tmp_path: P
 
 def test_what_is_missing_in_some_is_filled(tmp_path: Path, colour: SkinColour) -> None:
     def holed(seed: int) -> SkinTexture:
-        face = person(20, seed)
+        face = make_person(20, seed)
         face.mask[10] &= seed != 0
         return face
 

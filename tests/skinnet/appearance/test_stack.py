@@ -11,7 +11,7 @@ import numpy as np
 import pytest
 import torch
 
-from benchmarks.appearance import person
+from benchmarks.appearance import make_person
 from skinnet.appearance import stack_writer
 from skinnet.appearance.colour import SkinColour
 from skinnet.appearance.skin_texture import SkinTexture
@@ -111,7 +111,7 @@ def test_lost_arrays_are_made_again(
 
 
 def test_resolutions_must_agree(tmp_path: Path, persons: Persons, colour: SkinColour) -> None:
-    mixed = dict(persons) | {"big": partial(person, 32, 9)}
+    mixed = dict(persons) | {"big": partial(make_person, 32, 9)}
     with pytest.raises(InputError, match="big has 32 texels a side and the subjects before it 20"):
         write_stack(tmp_path, mixed, colour, "mixed")
 
@@ -202,7 +202,7 @@ def test_a_mask_where_nobody_has_skin_is_refused(stack: SubjectStack) -> None:
     ("offset", np.inf, "person 0: offset has a known texel that is not finite"),
 ])  # fmt: skip
 def test_textures_that_are_not_skin_are_refused(name: str, value: float, sentence: str) -> None:
-    face = person(20, 0)
+    face = make_person(20, 0)
     spoilt = getattr(face, name).copy()
     spoilt[10, 10] = value
     with pytest.raises(InputError, match=sentence):
