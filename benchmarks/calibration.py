@@ -21,7 +21,7 @@ from jaxtyping import Bool, Float
 from scipy.interpolate import CubicSpline
 
 from benchmarks.report import Results, main
-from examples.lightstage import CAMERA, FILTER, LIGHT, person
+from examples.lightstage import CAMERA, FILTER, LIGHT, paint_person
 from skinnet import InputError, calibration
 from skinnet.appearance.colour import SkinColour
 from skinnet.calibration.calibrate import calibrate
@@ -103,7 +103,7 @@ def crowd_colours(
     colour, mask = SkinColour(matrix, FILTER), chart(texels)
     each = []
     for number in range(PEOPLE):
-        truth = person(PEOPLE * crowd + number, PEOPLE, texels)
+        truth = paint_person(PEOPLE * crowd + number, PEOPLE, texels)
         texel = rng.choice(np.flatnonzero(mask), count // PEOPLE)
         f_mel, f_blood, cover = (
             torch.from_numpy(truth[name].ravel()[texel]) for name in ("f_mel", "f_blood", "cover")
