@@ -1,9 +1,9 @@
-"""A contact sheet of 64 pictures of the twin, whose heads are those that training validates on.
+"""A contact sheet of 64 pictures of the synthetic renderer, with the heads of the validation set.
 
     python -m examples.synthetic [--ict ict_facekit.npz] [--beside PHOTOS] [-o runs/synthetic.png]
 
-With a folder of photographs, a column of their faces, cropped as training crops them, stands beside
-the renders: what still tells the two apart is what the twin lacks.
+With a folder of photographs, a column of their faces stands beside the pictures, cropped as
+training crops them. What still tells the two apart is what the renderer lacks.
 """
 
 import argparse
@@ -18,24 +18,24 @@ from train.synthetic.faces import SyntheticFaces
 
 SIDE, ACROSS, DOWN = 128, 8, 8
 GAP = 12
-"""White pixels between the renders and the photographs."""
+"""White pixels between the pictures and the photographs."""
 
 Picture = NDArray[np.uint8]
 
 
-def renders(ict: str | None, geometry: str) -> list[Picture]:
-    """The first 64 pictures of the validation set."""
+def render_pictures(ict: str | None, geometry: str) -> list[Picture]:
+    """Render the first 64 pictures of the validation set."""
     count = ACROSS * DOWN
     data = SyntheticFaces(
         SIDE, ACROSS, val_heads=count, val_samples=count, ict=ict, geometry=geometry
     )
     data.setup("validate")
-    rows = [data.render(lot, "val").photograph for lot in data.val_dataloader()]
+    rows = [data.render(scenes, "val").photograph for scenes in data.val_dataloader()]
     return [to_uint8(one.movedim(0, -1).numpy()) for row in rows for one in row]
 
 
-def sheet(pictures: list[Picture], across: int) -> Picture:
-    """Pictures of one size row by row; what is missing at the end is white."""
+def tile(pictures: list[Picture], across: int) -> Picture:
+    """Put pictures of one size together row by row; what is missing at the end is white."""
     missing = -len(pictures) % across
     tiles = [*pictures, *[np.full_like(pictures[0], 255)] * missing]
     return np.concatenate(
@@ -43,12 +43,12 @@ def sheet(pictures: list[Picture], across: int) -> Picture:
     )
 
 
-def beside(renders: Picture, folder: Path) -> Picture:
-    """The sheet with a column of the first faces of a folder, as many as there are rows."""
+def add_photographs(sheet: Picture, folder: Path) -> Picture:
+    """Add a column of the first faces of a folder to a sheet, as many as there are rows."""
     faces = [crop.photograph for crop in find_crops(folder, SIDE)[0][:DOWN]]
-    column = sheet(faces, 1)
-    pad = [(0, len(renders) - len(column)), (GAP, 0), (0, 0)]
-    return np.concatenate([renders, np.pad(column, pad, constant_values=255)], 1)
+    column = tile(faces, 1)
+    pad = [(0, len(sheet) - len(column)), (GAP, 0), (0, 0)]
+    return np.concatenate([sheet, np.pad(column, pad, constant_values=255)], 1)
 
 
 def main() -> None:
@@ -61,9 +61,9 @@ def main() -> None:
     parser.add_argument("--geometry", default="runs/geometry", help="where heads are kept")
     parser.add_argument("-o", "--output", type=Path, default=Path("runs/synthetic.png"))
     options = parser.parse_args()
-    picture = sheet(renders(options.ict, options.geometry), ACROSS)
+    picture = tile(render_pictures(options.ict, options.geometry), ACROSS)
     if options.beside is not None:
-        picture = beside(picture, options.beside)
+        picture = add_photographs(picture, options.beside)
     options.output.parent.mkdir(parents=True, exist_ok=True)
     write_png(options.output, picture)
     print(f"written: {options.output}")

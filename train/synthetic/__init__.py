@@ -1,1 +1,1 @@
-"""Photometric twin: heads whose geometry is cast once and whose light is drawn on every step."""
+"""Synthetic renderer: heads are cast once, and lit and photographed anew on every step."""

@@ -51,13 +51,14 @@ def _chart_eye(ball: Float[np.ndarray, "points 3"]) -> Float[np.ndarray, "points
     """Angles from an eye's axis, in iris radii."""
     x, y, z = (ball - _find_centre(ball)).T
     across = np.hypot(x, y)
-    return np.stack([x, y], 1) * (np.arctan2(across, z) / _IRIS_ANGLE / across.clip(1e-9))[:, None]
+    scale = np.arctan2(across, z) / _IRIS_ANGLE / across.clip(1e-9)
+    return np.asarray(np.stack([x, y], 1) * scale[:, None])
 
 
 def _find_centre(ball: Float[np.ndarray, "points 3"]) -> Float[np.ndarray, "3"]:
     """Middle of an eyeball without its cornea, which bulges ahead."""
     low, high = ball.min(0), ball.max(0)
-    middle = (low + high) / 2
+    middle: Float[np.ndarray, "3"] = (low + high) / 2
     middle[2] = low[2] + (high - low)[:2].mean() / 2
     return middle
 
@@ -70,7 +71,7 @@ def _rotate_eye(
     left = np.array([[a, 0, p], [0, 1, 0], [-p, 0, a]])
     up = np.array([[1, 0, 0], [0, b, q], [0, -q, b]])
     middle = _find_centre(ball)
-    return (ball - middle) @ (left @ up).T + middle
+    return np.asarray((ball - middle) @ (left @ up).T + middle)
 
 
 def _find_neck(skin: LabelledMesh) -> Neck:

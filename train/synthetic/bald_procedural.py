@@ -53,21 +53,22 @@ def _extend_to_back(radius: _Grid) -> tuple[_Grid, _Grid, _Grid]:
     elevation = np.concatenate([[np.pi / 2], elevation, [-np.pi / 2]])
     radius = np.pad(radius, ((1, 1), (_BACK, _BACK)), "edge")
     radius[[0, -1]] = radius[[1, -2]].mean(1, keepdims=True)
-    return *np.broadcast_arrays(azimuth[None], elevation[:, None]), radius
+    azimuths, elevations = np.broadcast_arrays(azimuth[None], elevation[:, None])
+    return azimuths, elevations, radius
 
 
 def _measure_eyes(azimuth: _Grid, elevation: _Grid, height: float) -> _Grid:
     across, up = np.abs(azimuth) - _EYE_PLACE[0], elevation - _EYE_PLACE[1]
-    return 1 - (across / _EYE_HALF_WIDTH) ** 2 - (up / height) ** 2
+    return np.asarray(1 - (across / _EYE_HALF_WIDTH) ** 2 - (up / height) ** 2)
 
 
 def _measure_mouth(azimuth: _Grid, elevation: _Grid, smile: float) -> _Grid:
     up = elevation - _MOUTH_ELEVATION - 0.25 * azimuth**2
-    return 1 - (azimuth / _MOUTH_HALF_WIDTH) ** 2 - (up / smile) ** 2
+    return np.asarray(1 - (azimuth / _MOUTH_HALF_WIDTH) ** 2 - (up / smile) ** 2)
 
 
 def _step_smoothly(value: _Grid) -> _Grid:
-    return 1 / (1 + np.exp(-(value / 0.15).clip(-40, 40)))
+    return np.asarray(1 / (1 + np.exp(-(value / 0.15).clip(-40, 40))))
 
 
 def _make_skin(azimuth: _Grid, elevation: _Grid, radius: _Grid) -> LabelledMesh:

@@ -57,7 +57,7 @@ def _trace_rim(half_width: float, half_height: float, power: float) -> _Line:
 
 def _bend_back(x: Float[np.ndarray, "points"]) -> Float[np.ndarray, "points"]:
     """How far the front bends back, by the distance from the nose."""
-    return 0.28 * (np.abs(x) - 0.1).clip(0) ** 2
+    return np.asarray(0.28 * (np.abs(x) - 0.1).clip(0) ** 2)
 
 
 def _find_front(skin: LabelledMesh, rim: _Line) -> float:

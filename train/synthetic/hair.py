@@ -54,7 +54,8 @@ def _measure_hairline(cut: Haircut, azimuth: _Points, elevation: _Points) -> _Po
     temples = np.minimum(side - cut.sides, elevation + nape)
     ears = np.sqrt((side - 1.5) ** 2 / 0.5 + (elevation + 0.1) ** 2) - 0.22
     ears = np.where(side > 1.5, np.maximum(ears, side - 1.72), ears)
-    return np.maximum(np.minimum(elevation - line, elevation + nape), np.minimum(temples, ears))
+    top = np.minimum(elevation - line, elevation + nape)
+    return np.asarray(np.maximum(top, np.minimum(temples, ears)))
 
 
 def make_cap(skin: LabelledMesh, cut: Haircut, rng: np.random.Generator) -> LabelledMesh:
@@ -103,10 +104,10 @@ def _measure_head(skin: LabelledMesh, y: _Points, off: float) -> tuple[_Points, 
     share = ((0.4 - y) / 0.3).clip(0, 1)
     half_width = head + (ears + 0.01 - head).clip(0) * share**2 * (3 - 2 * share)
     back = z[(height < 0.4) & (skin.vertices[:, 2] < 0)].max()
-    return half_width + off, back + off
+    return np.asarray(half_width + off), float(back + off)
 
 
 def _sample_waves(points: Float[np.ndarray, "points 3"], rng: np.random.Generator) -> _Points:
     """Sample a smooth field of variance about one."""
     wave, phase = rng.normal(0, 4.0, (3, 6)), rng.uniform(0, 2 * np.pi, 6)
-    return np.cos(points @ wave + phase).sum(1) / np.sqrt(3)
+    return np.asarray(np.cos(points @ wave + phase).sum(1) / np.sqrt(3))

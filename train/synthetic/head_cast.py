@@ -96,7 +96,7 @@ def rotate(angles: Float[np.ndarray, "3"]) -> Float[np.ndarray, "3 3"]:
     pitch = np.array([[1, 0, 0], [0, a, -p], [0, p, a]])
     yaw = np.array([[b, 0, q], [0, 1, 0], [-q, 0, b]])
     roll = np.array([[c, -r, 0], [r, c, 0], [0, 0, 1]])
-    return roll @ yaw @ pitch
+    return np.asarray(roll @ yaw @ pitch)
 
 
 def cast_view(

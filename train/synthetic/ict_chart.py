@@ -37,17 +37,18 @@ def chart_skin(
     """
     own = _measure_angles(mean)
     marks = _measure_angles(mean[landmarks])
-    source = [marks[list(numbers)].mean(0) for numbers, _ in LANDMARK_PLACES]
-    target = [np.array(place) for _, place in LANDMARK_PLACES]
-    for place, chart in _EARS + tuple((place, place) for place in _list_anchors()):
-        source.append(np.array(place))
-        target.append(np.array(chart))
-    source, target = (
-        np.concatenate([x, x * [-1, 1]]) for x in (np.array(source), np.array(target))
+    pairs = [(marks[list(numbers)].mean(0), place) for numbers, place in LANDMARK_PLACES]
+    pairs += [(np.array(angles), place) for angles, place in _EARS]
+    pairs += [(np.array(place), place) for place in _list_anchors()]
+    angles = np.array([angles for angles, _ in pairs])
+    places = np.array([place for _, place in pairs])
+    # Both sides of the face; what lies on its middle line counts once.
+    source, once = np.unique(
+        np.concatenate([angles, angles * [-1, 1]]).round(9), axis=0, return_index=True
     )
-    source, once = np.unique(source.round(9), axis=0, return_index=True)
-    spline = RBFInterpolator(source, target[once], kernel="thin_plate_spline", smoothing=1e-6)
-    chart = spline(own)
+    target = np.concatenate([places, places * [-1, 1]])[once]
+    spline = RBFInterpolator(source, target, kernel="thin_plate_spline", smoothing=1e-6)
+    chart: Float[np.ndarray, "vertices 2"] = spline(own)
     chart[:, 1] -= 0.4 * (-1.02 - mean[:, 1]).clip(0)
     return chart
 

@@ -56,12 +56,12 @@ def colour_materials(
 
 def _colour_wall(surroundings: SurroundingsParameters, size: torch.Size) -> _Image:
     wall = F.interpolate(surroundings.wall, size, mode="bicubic", align_corners=True)
-    clutter = (
+    coarse, fine = (
         F.interpolate(one, size, mode="bilinear")
         for one in (surroundings.coarse_clutter, surroundings.fine_clutter)
     )
     light = expand_scalar(surroundings.wall_light)
-    return (wall * sum(clutter).exp() * light).clamp(0.001, 1.5)
+    return (wall * (coarse + fine).exp() * light).clamp(0.001, 1.5)
 
 
 def _colour_eye(features: FeatureParameters, place: _Place) -> _Image:

@@ -96,7 +96,7 @@ def _sample_fractions(
     features, share = average_texels(model.texture(beta), _TEXELS)
     layers = np.stack([features[1] * share, features[0] * share, share])
     melanin, hemoglobin, known = _sample_texture(layers, places)
-    return np.stack([melanin, hemoglobin]) / np.maximum(known, 1e-3)
+    return np.asarray(np.stack([melanin, hemoglobin]) / np.maximum(known, 1e-3))
 
 
 def _sample_texture(layers: Charts, places: ChartPlaces) -> Charts:
@@ -118,6 +118,7 @@ def find_procedural_places(own_uv: bool = False) -> ChartPlaces:
     """
     model = load_shape_model()
     space = embed_model(model, own_uv)
+    assert model.uv is not None and space.uv is not None  # The shipped model has both.
     interpolate = LinearNDInterpolator(model.uv, space.uv)
     axes = (np.linspace(0, 1, n) for n in CHART_SIZE[::-1])
     u, v = np.meshgrid(*axes)

@@ -46,6 +46,13 @@ def test_several_processes_cast_the_same(tmp_path: Path) -> None:
     assert all(np.array_equal(a, b) for a, b in zip(one, two, strict=True))
 
 
+def test_files_keep_the_names_of_their_arrays(tmp_path: Path, cast_numbers: list[int]) -> None:
+    head_cache.load_or_cast_heads(tmp_path, SIZE, 1, "val", 0)
+    (file,) = tmp_path.rglob("val_00000.npz")
+    with np.load(file) as arrays:
+        assert set(arrays) == {"settings", "label", "normal", "chart", "openness", "seen"}
+
+
 def test_more_heads_leave_the_first_as_they_were(tmp_path: Path, cast_numbers: list[int]) -> None:
     one = head_cache.load_or_cast_heads(tmp_path, SIZE, 1, "train", 0)
     three = head_cache.load_or_cast_heads(tmp_path, SIZE, 3, "train", 0)

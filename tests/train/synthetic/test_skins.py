@@ -1,4 +1,4 @@
-"""ModelSkins of a hybrid model on the twin's charts."""
+"""Skins of a hybrid model on the charts of synthetic faces."""
 
 from pathlib import Path
 

@@ -1,0 +1,33 @@
+"""The same seed gives the same pictures as in earlier versions."""
+
+from collections.abc import Iterator
+
+import pytest
+import torch
+from torch.utils.data import default_collate
+
+from train.batch import Batch
+from train.synthetic.faces import SyntheticFaces, SyntheticScenes
+
+TRAIN = (0.21828683, 0.0242834, 0.02715974, 0.05323386, 0.00266205, 0.07614503, 0.16027005)
+TEST = (0.29022822, 0.03692688, 0.02704669, 0.04654461, 0.00173474, 0.21097112, 0.21221191)
+
+
+def describe(batch: Batch) -> Iterator[float]:
+    """Means that change if any draw or any step of the renderer changes."""
+    assert batch.truth is not None and batch.capture is not None
+    weight = torch.linspace(0, 1, 32)
+    for value in (batch.photograph, *batch.truth[:5]):
+        yield (value * weight).mean().item()
+    yield batch.capture.white_balance.abs().sum().item()
+
+
+@pytest.mark.parametrize(("split", "expected"), [("train", TRAIN), ("test", TEST)])
+def test_pictures_are_those_of_earlier_versions(
+    data: SyntheticFaces, split: str, expected: tuple[float, ...]
+) -> None:
+    scenes = SyntheticScenes(
+        data.buffers[split], split, 4, seed=0, domain_randomised=split == "train"
+    )
+    batch = data.render(default_collate([scenes[index] for index in range(4)]), split)
+    assert tuple(describe(batch)) == pytest.approx(expected, abs=1e-5)
