@@ -41,7 +41,7 @@ HEIGHT = 180.0
 FACE = (1.45, 1.15)
 """Largest azimuth and elevation of the chart that count as face, in radians."""
 
-LANDMARKS = 20
+LANDMARK_COUNT = 20
 
 
 @cache
@@ -118,7 +118,7 @@ def _make_grid(side: int, vertices: int) -> np.ndarray:
 def _place_landmarks(mean: np.ndarray) -> dict[str, int]:
     """Choose vertices far from each other, first the tip of the nose."""
     chosen = [int(mean[:, 2].argmax())]
-    while len(chosen) < LANDMARKS:
+    while len(chosen) < LANDMARK_COUNT:
         far = np.min([np.linalg.norm(mean - mean[one], axis=1) for one in chosen], 0)
         chosen.append(int(np.where(mean[:, 2] > np.median(mean[:, 2]), far, 0).argmax()))
     return {f"mark_{number}": vertex for number, vertex in enumerate(chosen)}

@@ -10,7 +10,7 @@ from skinnet.errors import InputError
 from skinnet.shape._ibug import IBUG
 from skinnet.shape.model import ShapeModel
 
-FACE = (1.25, 0.975, -0.175, 2.5)
+FACE_OUTLINE = (1.25, 0.975, -0.175, 2.5)
 """Outline of the face on the chart, a superellipse: half its width, half its height and the
 elevation of its centre in radians, and its exponent. It excludes ears, hair and throat."""
 
@@ -24,7 +24,7 @@ MODES = 43
 """Modes that are kept, one for each identity number; they hold 99.99 % of the variance."""
 
 # Azimuth and elevation in radians of the features of the mean head.
-_PLACES = {
+_LANDMARK_ANGLES = {
     "left_brow_outer": (0.57, 0.15),
     "left_brow_inner": (0.12, 0.17),
     "nose_bridge": (0.0, 0.03),
@@ -97,7 +97,7 @@ def _compute_axes(
 def _select_face(
     azimuth: Float[np.ndarray, "columns"], elevation: Float[np.ndarray, "rows"]
 ) -> Bool[np.ndarray, "rows columns"]:
-    width, height, middle, power = FACE
+    width, height, middle, power = FACE_OUTLINE
     across, along = np.abs(azimuth / width), np.abs((elevation - middle) / height)
     inside: Bool[np.ndarray, "rows columns"] = along[:, None] ** power + across**power <= 1
     return inside
@@ -175,9 +175,9 @@ def _place_landmarks(
     azimuth: Float[np.ndarray, "columns"],
     elevation: Float[np.ndarray, "rows"],
 ) -> dict[str, int]:
-    """Find the vertices nearest to `_PLACES`, and their mirror images."""
+    """Find the vertices nearest to `_LANDMARK_ANGLES`, and their mirror images."""
     found: dict[str, int] = {}
-    for name, (across, along) in _PLACES.items():
+    for name, (across, along) in _LANDMARK_ANGLES.items():
         row = int(np.abs(elevation - along).argmin())
         column = int(np.abs(azimuth - across).argmin())
         found[name] = int(number[row, column])

@@ -12,13 +12,13 @@ from skinnet.shape.fit_settings import FitSettings, StageRecord
 from skinnet.shape.model import ShapeModel
 from skinnet.shape.similarity import Similarity
 
-NEAR = 25.0
+MAX_MEDIAN_DISTANCE = 25.0
 """Largest median distance in mm from the model's vertices to the scan at which a fit goes on."""
 
-INDEPENDENT = 1000
+INDEPENDENT_POINTS = 1000
 """Matched points whose errors count as independent; errors of neighbours are correlated."""
 
-STILL = 0.01
+MIN_CHANGE = 0.01
 """Smallest change of the RMS distance in mm that matters; scanners are not more accurate."""
 
 
@@ -97,12 +97,12 @@ class IcpStage:
         weights = kept.astype(np.float64)
         sliding = self.settings.sliding
         moments = compute_moments(self.basis, self.mean, match.point, weights, normals, sliding)
-        prior = self.prior * (pose.scale / self.millimetres) ** 2 * kept.sum() / INDEPENDENT
+        prior = self.prior * (pose.scale / self.millimetres) ** 2 * kept.sum() / INDEPENDENT_POINTS
         return minimise(SeparableObjective(moments, self.variances, prior), pose)
 
     def _has_settled(self, history: list[float]) -> bool:
         recent = np.array(history[-3:])
-        limit = np.maximum(self.settings.tolerance * recent[1:], STILL)
+        limit = np.maximum(self.settings.tolerance * recent[1:], MIN_CHANGE)
         return len(recent) == 3 and bool(np.all(np.abs(np.diff(recent)) < limit))
 
     def _check_overlap(
@@ -112,7 +112,7 @@ class IcpStage:
         millimetres: float,
     ) -> None:
         median = float(np.median(distance)) * millimetres
-        if median > NEAR:
+        if median > MAX_MEDIAN_DISTANCE:
             raise InputError(
                 f"nothing lies near the model: half of its vertices are more than {median:.0f} mm "
                 "away from the scan; check that the landmarks belong to this scan."

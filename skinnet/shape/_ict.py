@@ -21,7 +21,7 @@ from skinnet.shape._ibug import name_ibug_point
 from skinnet.shape.model import ShapeModel
 
 NEUTRAL = "generic_neutral_mesh.obj"
-FACE = 9409
+FACE_VERTEX_COUNT = 9409
 """The first vertices of the model are those of the face; head, eyes and teeth follow."""
 
 MILLIMETRES = 10.0
@@ -80,7 +80,7 @@ def load_ict_folder(folder: Path, whole: bool = False) -> ShapeModel:
         MILLIMETRES,
         str(folder),
     )
-    return model if whole else _crop_to_face(model, index < FACE)
+    return model if whole else _crop_to_face(model, index < FACE_VERTEX_COUNT)
 
 
 def _read_identity(

@@ -12,10 +12,10 @@ from skinnet.mesh._topology import boundary, half_edges
 from skinnet.mesh.mesh import Mesh
 from skinnet.mesh.normals import compute_vertex_normals
 
-DENSE = 60_000
+MIN_POINTS = 60_000
 """Triangles of a coarser scan are split into four until it has this many points."""
 
-SPIKE = 4.0
+SPIKE_RATIO = 4.0
 """A vertex is an outlier of the scanner if its shortest edge is this many times as long as the
 mean of its neighbours' shortest edges."""
 
@@ -39,7 +39,7 @@ class NearestPoints(NamedTuple):
 class ScanPoints:
     """Points of a mesh with unit normals, and whether each lies on the boundary.
 
-    Spikes (`SPIKE`) are removed first. Distances are to points, not to triangles. Subdivision
+    Spikes (`SPIKE_RATIO`) are removed first. Distances are to points, not to triangles. Subdivision
     bounds the points' spacing, and a fit measures to the tangent plane.
     """
 
@@ -48,7 +48,7 @@ class ScanPoints:
         triangles = triangles[~find_spikes(vertices, triangles)[triangles].any(1)]
         if not len(triangles):
             raise InputError(f"{mesh.name} has no surface, only single points far apart.")
-        while len(vertices) < DENSE:
+        while len(vertices) < MIN_POINTS:
             vertices, triangles = subdivide(vertices, triangles)
         used = np.unique(triangles)
         self.points = vertices[used]
@@ -70,7 +70,7 @@ class ScanPoints:
 def find_spikes(
     vertices: Float[np.ndarray, "vertices 3"], triangles: Int[np.ndarray, "triangles 3"]
 ) -> Bool[np.ndarray, "vertices"]:
-    """Find vertices whose edges are all far longer than their neighbours' (`SPIKE`)."""
+    """Find vertices whose edges are all far longer than their neighbours' (`SPIKE_RATIO`)."""
     sides = triangles[:, [[0, 1], [1, 2], [2, 0]]].reshape(-1, 2)
     both = np.concatenate([sides, sides[:, ::-1]])
     length = np.linalg.norm(vertices[both[:, 0]] - vertices[both[:, 1]], axis=1)
@@ -78,4 +78,4 @@ def find_spikes(
     np.minimum.at(shortest, both[:, 0], length)
     count = np.bincount(both[:, 0], minlength=len(vertices))
     total = np.bincount(both[:, 0], shortest[both[:, 1]], len(vertices))
-    return shortest > SPIKE * (total / np.maximum(count, 1))
+    return shortest > SPIKE_RATIO * (total / np.maximum(count, 1))

@@ -18,8 +18,7 @@ class FitSettings:
         points that are
             accurate to 1 mm, however many are matched; 0 is the paper's fit.
         stages: for each stage, coarse to fine, the numbers of vertices and modes (0 for all) and
-        the
-            least weight of the prior, while matches are still rough.
+            the least weight of the prior, while matches are still rough.
         iterations: largest number of steps in each stage.
         tolerance: a stage ends when the kept vertices' RMS distance changes, twice in a row, by
             less than this share of it or by less than 0.01 mm.

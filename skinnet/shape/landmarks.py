@@ -19,13 +19,13 @@ from skinnet.shape._landmark_formats import parse_ljson, parse_pp
 from skinnet.shape.model import ShapeModel
 from skinnet.shape.similarity import fit_similarity
 
-FEWEST = 4
+MIN_COUNT = 4
 """A fit needs at least this many landmarks in common with its model."""
 
-FAR = 0.1
+MAX_DISTANCE = 0.1
 """Largest distance of a landmark from the mesh, in lengths of the mesh."""
 
-MIRRORED = 0.2
+MIRRORED_RATIO = 0.2
 """Squared residual of the best reflection over that of the best rotation; below this, left and
 right are swapped. It is above 5 for real and synthetic faces, below 0.2 for swapped ones, and near
 1 for points in a plane."""
@@ -131,8 +131,7 @@ def check_landmarks(
 
     Raises:
         InputError: If fewer than four names are common, or points are not finite, lie on a line,
-        are
-            far from the mesh, or fit the model's mirror image better than the model.
+            are far from the mesh, or fit the model's mirror image better than the model.
 
     Example:
         >>> from skinnet.shape import check_landmarks, load_shape_model
@@ -146,11 +145,11 @@ def check_landmarks(
             f"{model.name} has no landmarks; give a .json file of names and vertex numbers."
         )
     common = [each for each in model.landmarks if each in points]
-    if len(common) < FEWEST:
+    if len(common) < MIN_COUNT:
         missing = ", ".join(each for each in model.landmarks if each not in points)
         raise InputError(
             f"{name}: {len(common)} of the model's {len(model.landmarks)} are there, and at least "
-            f"{FEWEST} are needed; missing are {missing}."
+            f"{MIN_COUNT} are needed; missing are {missing}."
         )
     target = np.stack([points[each] for each in common]).astype(np.float64)
     bad = [each for each, point in zip(common, target, strict=True) if not np.isfinite(point).all()]
@@ -169,7 +168,7 @@ def _check_near(
     length = float(np.ptp(mesh.vertices, axis=0).max())
     distance = np.asarray(cKDTree(mesh.vertices).query(points)[0]) / length
     worst = int(distance.argmax())
-    if distance[worst] > FAR:
+    if distance[worst] > MAX_DISTANCE:
         raise InputError(
             f"{name}: {names[worst]} is {distance[worst]:.2g} times the length of {mesh.name} away "
             "from it; are they in the same unit and frame?"
@@ -186,7 +185,7 @@ def _check_side(
         float(np.square(fit_similarity(source, target, reflection)(source) - target).sum())
         for reflection in (False, True)
     )
-    if mirrored + 1e-9 * spread[0] ** 2 < MIRRORED * residual:
+    if mirrored + 1e-9 * spread[0] ** 2 < MIRRORED_RATIO * residual:
         raise InputError(f"{name} appear mirrored; swap left and right.")
 
 

@@ -85,8 +85,7 @@ def register(
 
     Raises:
         InputError: If there are neither landmarks nor a start, fewer than four landmarks are known,
-        or
-            the model does not come to lie on the scan.
+            or the model does not come to lie on the scan.
 
     Source:
         Section 4.1 and Equations 5 to 8 of Alotaibi & Smith 2017.

@@ -16,8 +16,7 @@ def find_mirror_vertices(
     Args:
         vertices: Vertices of a face whose plane of symmetry is x = 0.
         tolerance: Largest distance between a mirrored vertex and its image, as a share of the
-        largest
-            extent.
+            largest extent.
 
     Returns:
         The index of each vertex' image, which is the vertex itself in the plane of symmetry; None

@@ -68,8 +68,7 @@ def compute_tutte_embedding(
 
     Raises:
         InputError: If the mesh is not one piece with the topology of a disc with holes, a vertex
-        has no
-            triangle, or the mesh is not symmetric enough for its `mirror`.
+            has no triangle, or the mesh is not symmetric enough for its `mirror`.
 
     Source:
         Section 4.2 of Alotaibi & Smith 2017, which uses the symmetric embedding of Bas et al.;

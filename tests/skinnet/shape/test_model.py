@@ -31,7 +31,9 @@ def test_arrays_that_belong_together_make_a_model() -> None:
     model = small_model()
     same = ShapeModel.from_arrays(model.mean, model.basis, model.variances, model.triangles)
     assert np.array_equal(same.reconstruct(np.ones(2)), model.reconstruct(np.ones(2)))
-    with pytest.raises(InputError, match=r"a file is not a usable shape model: its unit is 0\.0 milli"):
+    with pytest.raises(
+        InputError, match=r"a file is not a usable shape model: its unit is 0\.0 milli"
+    ):
         ShapeModel.from_arrays(
             model.mean,
             model.basis,

@@ -4,7 +4,7 @@ import numpy as np
 import trimesh
 
 from skinnet.mesh.mesh import Mesh
-from skinnet.shape._scan_points import DENSE, ScanPoints, find_spikes
+from skinnet.shape._scan_points import MIN_POINTS, ScanPoints, find_spikes
 
 
 def sphere(subdivisions: int = 4) -> Mesh:
@@ -22,7 +22,7 @@ def measure_exactly(mesh: Mesh, query: np.ndarray) -> float:
 def test_distances_to_a_subdivided_sphere() -> None:
     ball = sphere()
     scan = ScanPoints(ball)
-    assert len(scan.points) >= DENSE
+    assert len(scan.points) >= MIN_POINTS
     rng = np.random.default_rng(0)
     queries = rng.normal(size=(40, 3))
     exact = [measure_exactly(ball, query) for query in queries]
