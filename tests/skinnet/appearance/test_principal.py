@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from skinnet.appearance import _feature_blocks
-from skinnet.appearance._feature_blocks import ArrayBlocks, compute_block_width
+from skinnet.appearance._feature_blocks import ArrayBlocks
 from skinnet.appearance._principal import (
     PrincipalComponents,
     combine_grams,
@@ -55,11 +55,6 @@ def test_a_memmap_is_read_block_by_block(tmp_path: Path, monkeypatch: pytest.Mon
     blocks = ArrayBlocks(mapped, 2)
     assert [block.shape for block in blocks] == [(6, 2, 5)] * 8
     assert np.array_equal(fit(mapped).basis, fit(rows(), width=5).basis)
-
-
-def test_a_thousand_subjects_take_blocks_of_bounded_size() -> None:
-    for subjects in (25, 1000):
-        assert 0.9 * 2**27 < 4 * subjects * 5 * compute_block_width(subjects, 5) <= 2**27
 
 
 def test_inner_products_are_gathered_channel_by_channel() -> None:
@@ -112,8 +107,3 @@ def test_a_subject_that_is_there_twice_spans_nothing() -> None:
 def test_subjects_that_do_not_differ_are_refused(count: int) -> None:
     with pytest.raises(InputError, match=f"subjects that differ; got {count} that do not"):
         fit(rows()[[0] * count])
-
-
-def test_features_are_split_into_equal_blocks() -> None:
-    with pytest.raises(InputError, match="80 features cannot be split into 3"):
-        ArrayBlocks(rows(), 3)

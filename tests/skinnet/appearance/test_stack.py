@@ -1,7 +1,6 @@
 """People are spooled one at a time, resumed, guarded, and read back under a common mask."""
 
 import json
-import shutil
 from collections.abc import Callable
 from dataclasses import replace
 from functools import partial
@@ -9,10 +8,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-import torch
 
-from benchmarks.appearance import make_person
-from skinnet.appearance import stack_writer
 from skinnet.appearance.colour import SkinColour
 from skinnet.appearance.skin_texture import SkinTexture
 from skinnet.appearance.stack import SubjectStack, open_stack
@@ -46,89 +42,6 @@ def test_a_subject_comes_back_as_it_was(stack: SubjectStack, persons: Persons) -
     for name in ("f_mel", "f_blood", "offset"):
         inside = getattr(given, name)[given.mask]
         assert np.array_equal(getattr(found, name)[given.mask], inside)
-
-
-def test_albedo_is_skin_and_offset(stack: SubjectStack, colour: SkinColour) -> None:
-    face = stack.texture(0)
-    f_mel, f_blood = (torch.from_numpy(m.ravel()) for m in (face.f_mel, face.f_blood))
-    skin = colour.skin(f_mel, f_blood).numpy().T.reshape(*face.mask.shape, 3)
-    albedo = face.albedo(colour)
-    assert np.allclose(albedo[face.mask], (skin + face.offset)[face.mask])
-    assert (albedo[~face.mask] == 0).all()
-
-
-def test_interrupted_work_goes_on_where_it_was(
-    tmp_path: Path, persons: Persons, colour: SkinColour, stack: SubjectStack
-) -> None:
-    made: list[str] = []
-
-    def noted(name: str, fails: bool) -> SkinTexture:
-        if fails:
-            raise InputError(f"{name} has no skin.")
-        made.append(name)
-        return persons[name]()
-
-    failing = {name: partial(noted, name, name == "person 4") for name in persons}
-    with pytest.raises(InputError, match="person 4 has no skin"):
-        write_stack(tmp_path, failing, colour, "people")
-    with pytest.raises(InputError, match="holds 4 of 7 subjects; run the command"):
-        open_stack(tmp_path)
-    resumed = write_stack(
-        tmp_path, {name: partial(noted, name, False) for name in persons}, colour, "people"
-    )
-    assert made == list(persons)
-    for name in ("features.npy", "masks.npy"):
-        assert (tmp_path / name).read_bytes() == (stack.folder / name).read_bytes()
-    write_stack(tmp_path, failing, colour, "people")
-    assert made == list(persons) and resumed.names == tuple(persons)
-
-
-def test_another_stack_is_not_written_over(
-    stack: SubjectStack, persons: Persons, colour: SkinColour
-) -> None:
-    before = (stack.folder / "features.npy").read_bytes()
-    fewer = dict(list(persons.items())[:3])
-    others = SkinColour(nodes=(24, 16))
-    for subjects, seen, inputs in (
-        (persons, colour, "others"),
-        (fewer, colour, "people"),
-        (persons, others, "people"),
-    ):
-        with pytest.raises(InputError, match="choose another folder or delete it"):
-            write_stack(stack.folder, subjects, seen, inputs)
-    assert (stack.folder / "features.npy").read_bytes() == before
-
-
-def test_lost_arrays_are_made_again(
-    tmp_path: Path, stack: SubjectStack, persons: Persons, colour: SkinColour
-) -> None:
-    shutil.copytree(stack.folder, tmp_path / "copy")
-    (tmp_path / "copy" / "masks.npy").write_bytes(b"\x93NUMPY")
-    with pytest.raises(InputError, match="are damaged; delete the folder, make it again"):
-        open_stack(tmp_path / "copy")
-    found = write_stack(tmp_path / "copy", persons, colour, "people")
-    assert np.array_equal(found.texture(6).f_mel, stack.texture(6).f_mel)
-
-
-def test_resolutions_must_agree(tmp_path: Path, persons: Persons, colour: SkinColour) -> None:
-    mixed = dict(persons) | {"big": partial(make_person, 32, 9)}
-    with pytest.raises(InputError, match="big has 32 texels a side and the subjects before it 20"):
-        write_stack(tmp_path, mixed, colour, "mixed")
-
-
-def test_one_subject_is_no_sample(tmp_path: Path, persons: Persons, colour: SkinColour) -> None:
-    with pytest.raises(InputError, match="at least two subjects; got 1"):
-        write_stack(tmp_path / "x", {"person 0": persons["person 0"]}, colour, "")
-    assert not (tmp_path / "x").exists()
-
-
-def test_a_full_disk_is_noticed_before(
-    tmp_path: Path, persons: Persons, colour: SkinColour, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    usage = shutil.disk_usage(tmp_path)._replace(free=1000)
-    monkeypatch.setattr(stack_writer.shutil, "disk_usage", lambda _: usage)
-    with pytest.raises(InputError, match=r"7 subjects of 20 x 20 texels take 0\.0 GB"):
-        write_stack(tmp_path, persons, colour, "")
 
 
 @pytest.mark.parametrize("text", [None, "", "[]", "{}", '{"names": 3}'])
@@ -193,17 +106,3 @@ def test_a_drawn_mask_narrows_the_cover(stack: SubjectStack) -> None:
 def test_a_mask_where_nobody_has_skin_is_refused(stack: SubjectStack) -> None:
     with pytest.raises(InputError, match="texels of the mask are known in no subject"):
         stack.read_blocks(np.ones((20, 20), bool))
-
-
-@pytest.mark.parametrize(("name", "value", "sentence"), [
-    ("f_mel", 12.3, "person 0: f_mel is a volume fraction .* got 12.3. Was it given in percent"),
-    ("f_blood", -0.1, "person 0: f_blood is a volume fraction .* got -0.1"),
-    ("f_blood", np.nan, "person 0: f_blood has a known texel that is not finite"),
-    ("offset", np.inf, "person 0: offset has a known texel that is not finite"),
-])  # fmt: skip
-def test_textures_that_are_not_skin_are_refused(name: str, value: float, sentence: str) -> None:
-    face = make_person(20, 0)
-    spoilt = getattr(face, name).copy()
-    spoilt[10, 10] = value
-    with pytest.raises(InputError, match=sentence):
-        replace(face, **{name: spoilt})
