@@ -83,8 +83,8 @@ class IcpStage:
         if self.settings.normals:
             facing = np.einsum("vk,vk->v", self.normals @ pose.rotation.T, match.normal)
             far[facing < np.cos(np.radians(self.settings.angle))] = np.inf
-        wanted = max(int(np.ceil(self.settings.kept * len(far))) - 1, 0)
-        kept = (far <= np.partition(far, wanted)[wanted]) & np.isfinite(far)
+        last = max(int(np.ceil(self.settings.kept * len(far))) - 1, 0)
+        kept = (far <= np.partition(far, last)[last]) & np.isfinite(far)
         millimetres = self.millimetres / pose.scale
         self._check_overlap(match.distance, kept, millimetres)
         across = match.measure_distance(moved)[kept] * millimetres

@@ -1,8 +1,12 @@
-"""Landmark files of other programs: menpo's .ljson and MeshLab's .pp."""
+"""Files of landmarks: .csv, .json, menpo's .ljson and MeshLab's .pp."""
 
-from collections.abc import Mapping
+import csv
+import json
+from collections.abc import Callable, Mapping
+from pathlib import Path
 from typing import Any
 from xml.parsers import expat
+from xml.parsers.expat import ExpatError
 
 from skinnet.errors import InputError
 
@@ -23,7 +27,25 @@ _GROUPS = {
 }
 
 
-def parse_ljson(document: Mapping[str, Any]) -> dict[str, list[float]]:
+def parse_landmark_file(path: Path) -> Mapping[str, Any]:
+    """Parse a .csv, .json, .ljson or .pp file into names and points, or vertex numbers.
+
+    Raises `InputError` for a file that is missing, damaged or of another kind.
+    """
+    parse = _PARSERS.get(path.suffix.lower())
+    if parse is None:
+        raise InputError(f"{path} is not a landmark file; give one of {', '.join(_PARSERS)}.")
+    try:
+        return parse(path.read_bytes())
+    except FileNotFoundError:
+        raise InputError(f"There is no landmark file {path}; check the path.") from None
+    except InputError as error:
+        raise InputError(f"{path} cannot be used: {error}.") from error
+    except (OSError, ExpatError, ValueError, LookupError, TypeError, AttributeError) as error:
+        raise InputError(f"{path} is damaged or of another layout ({error!r}).") from error
+
+
+def _parse_ljson(document: Mapping[str, Any]) -> dict[str, list[float]]:
     """Parse a landmarker.io file, versions 1 to 3, into iBUG numbers and points.
 
     Of several sets of points, the first counts. Points are numbered by their label and place in it;
@@ -45,7 +67,7 @@ def parse_ljson(document: Mapping[str, Any]) -> dict[str, list[float]]:
     return _number_points(labelled)
 
 
-def parse_pp(text: bytes) -> dict[str, list[float]]:
+def _parse_pp(text: bytes) -> dict[str, list[float]]:
     """Parse a MeshLab file of picked points into names and points; inactive ones are left out.
 
     Raises `InputError` for entities, and `ExpatError`, `KeyError` or `ValueError` for another file.
@@ -88,3 +110,30 @@ def _number_points(labelled: list[tuple[str, list[Any]]]) -> dict[str, list[floa
         for number, point in pairs
         if None not in point
     }
+
+
+def _parse_csv(text: bytes) -> dict[str, list[float]]:
+    rows = [row for row in csv.reader(text.decode("utf-8-sig").splitlines()) if row]
+    if rows and [cell.strip().lower() for cell in rows[0]] == ["name", "x", "y", "z"]:
+        rows = rows[1:]
+    named = {}
+    for row in rows:
+        if len(row) != 4:
+            raise InputError(f"the line {','.join(row)!r} is not name,x,y,z")
+        named[row[0]] = [float(value) for value in row[1:]]
+    return named
+
+
+def _parse_json(text: bytes) -> Mapping[str, Any]:
+    document = json.loads(text)
+    if not isinstance(document, dict):
+        raise InputError("it is not an object of names")
+    return document
+
+
+_PARSERS: Mapping[str, Callable[[bytes], Mapping[str, Any]]] = {
+    ".csv": _parse_csv,
+    ".json": _parse_json,
+    ".ljson": lambda text: _parse_ljson(json.loads(text)),
+    ".pp": _parse_pp,
+}

@@ -106,7 +106,7 @@ class SeparableObjective:
             return np.asarray(cho_solve(cho_factor(design), right))
         except np.linalg.LinAlgError as error:
             raise InputError(
-                f"{len(self.variances)} modes cannot be told apart by these correspondences; use "
+                f"{len(self.variances)} modes cannot be distinguished by these correspondences; use "
                 "fewer modes or a MAP weight above 0."
             ) from error
 

@@ -1,11 +1,9 @@
 """Named points of a face: vertices of a model, positions on a scan."""
 
-import csv
 import json
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any
-from xml.parsers.expat import ExpatError
 
 import numpy as np
 from jaxtyping import Float
@@ -15,7 +13,7 @@ from skinnet.errors import InputError
 from skinnet.files import write_text
 from skinnet.mesh.mesh import Mesh
 from skinnet.shape._ibug import resolve_name
-from skinnet.shape._landmark_formats import parse_ljson, parse_pp
+from skinnet.shape._landmark_formats import parse_landmark_file
 from skinnet.shape.model import ShapeModel
 from skinnet.shape.similarity import fit_similarity
 
@@ -55,7 +53,7 @@ def read_landmarks(path: Path, mesh: Mesh | None = None) -> dict[str, Float[np.n
         >>> read_landmarks(Path("face.csv"))
         {'nose_tip': array([0. , 1.5, 9. ])}
     """
-    named = {resolve_name(name): value for name, value in _parse(Path(path)).items()}
+    named = {resolve_name(name): value for name, value in parse_landmark_file(Path(path)).items()}
     return {name: _locate(path, name, value, mesh) for name, value in named.items()}
 
 
@@ -79,7 +77,7 @@ def read_landmark_vertices(path: Path, vertex_count: int) -> dict[str, int]:
         >>> read_landmark_vertices(Path("model.json"), vertex_count=200)
         {'chin': 120, 'nose_tip': 7}
     """
-    named = {resolve_name(name): value for name, value in _parse(Path(path)).items()}
+    named = {resolve_name(name): value for name, value in parse_landmark_file(Path(path)).items()}
     return {name: _check_vertex(path, name, value, vertex_count) for name, value in named.items()}
 
 
@@ -187,47 +185,6 @@ def _check_side(
     )
     if mirrored + 1e-9 * spread[0] ** 2 < MIRRORED_RATIO * residual:
         raise InputError(f"{name} appear mirrored; swap left and right.")
-
-
-def _parse(path: Path) -> Mapping[str, Any]:
-    parse = _PARSERS.get(path.suffix.lower())
-    if parse is None:
-        raise InputError(f"{path} is not a landmark file; give one of {', '.join(_PARSERS)}.")
-    try:
-        return parse(path.read_bytes())
-    except FileNotFoundError:
-        raise InputError(f"There is no landmark file {path}; check the path.") from None
-    except InputError as error:
-        raise InputError(f"{path} cannot be used: {error}.") from error
-    except (OSError, ExpatError, ValueError, LookupError, TypeError, AttributeError) as error:
-        raise InputError(f"{path} is damaged or of another layout ({error!r}).") from error
-
-
-def _parse_csv(text: bytes) -> dict[str, list[float]]:
-    rows = [row for row in csv.reader(text.decode("utf-8-sig").splitlines()) if row]
-    if rows and [cell.strip().lower() for cell in rows[0]] == ["name", "x", "y", "z"]:
-        rows = rows[1:]
-    named = {}
-    for row in rows:
-        if len(row) != 4:
-            raise InputError(f"the line {','.join(row)!r} is not name,x,y,z")
-        named[row[0]] = [float(value) for value in row[1:]]
-    return named
-
-
-def _parse_json(text: bytes) -> Mapping[str, Any]:
-    document = json.loads(text)
-    if not isinstance(document, dict):
-        raise InputError("it is not an object of names")
-    return document
-
-
-_PARSERS: Mapping[str, Callable[[bytes], Mapping[str, Any]]] = {
-    ".csv": _parse_csv,
-    ".json": _parse_json,
-    ".ljson": lambda text: parse_ljson(json.loads(text)),
-    ".pp": parse_pp,
-}
 
 
 def _locate(path: Path, name: str, value: Any, mesh: Mesh | None) -> Float[np.ndarray, "3"]:

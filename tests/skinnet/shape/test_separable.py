@@ -139,7 +139,7 @@ def test_chunks_change_nothing(monkeypatch: pytest.MonkeyPatch) -> None:
     np.testing.assert_allclose(parts.cross, problem.separable.moments.cross, rtol=1e-9, atol=1e-9)
 
 
-def test_modes_that_cannot_be_told_apart_are_refused_in_words() -> None:
+def test_modes_that_cannot_be_distinguished_are_refused_in_words() -> None:
     problem = Problem(0.0, None)
     basis = np.concatenate([problem.basis, problem.basis[:1]])
     moments = compute_moments(basis, problem.mean, problem.points, problem.weights)

@@ -130,7 +130,7 @@ def test_a_curved_scan_textures_the_model_made_from_it() -> None:
     scan = Mesh(vertices, triangles, uv, triangles, texture, "scan")
     image, mask = project(replace(scan, texture=None), scan, max_distance=1.0)
     space = TextureSpace(uv, triangles, SIZE)
-    # The rim and the edges of the holes are the scan's open edge.
+    # The rim and the edges of the holes are the scan's boundary.
     assert mask.sum() > 0.85 * space.mask.sum() and (space.mask | ~mask).all()
     place = space.interpolate(uv)[mask]
     ramps = srgb_to_linear((place * 128 - 0.5).clip(0, 127) / 127)

@@ -83,7 +83,7 @@ def test_a_nearly_symmetric_mesh_gets_an_exactly_symmetric_embedding() -> None:
 
 
 @given(st.integers(0, 10**6))
-def test_quads_may_be_split_as_they_like(seed: int) -> None:
+def test_quads_may_be_split_in_any_way(seed: int) -> None:
     vertices, triangles = make_face_mesh(14, 17)
     mirror = find_mirror_vertices(vertices)
     assert mirror is not None
@@ -97,7 +97,7 @@ def test_quads_may_be_split_as_they_like(seed: int) -> None:
     assert count_flipped_triangles(uv, triangles) == 0 and asymmetry(uv, mirror) < 1e-12
 
 
-def test_half_a_quad_on_one_side_of_the_boundary_is_borne() -> None:
+def test_half_a_quad_on_one_side_of_the_boundary_is_accepted() -> None:
     mirror = find_mirror_vertices(VERTICES)
     assert mirror is not None
     quads = len(TRIANGLES) // 2
