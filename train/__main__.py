@@ -3,12 +3,12 @@
 import os
 import sys
 
-# Read when torch starts its threads. Waiting threads that spin stop each other on a busy machine.
+# Set before torch starts its threads: threads that spin while they wait slow a busy machine.
 os.environ.setdefault("OMP_WAIT_POLICY", "PASSIVE")
 
 
 def run() -> int:
-    """The training command, or a sentence if the extra is missing."""
+    """Run the training command, or print a sentence if the extra is missing."""
     try:
         from train.cli import main
     except ModuleNotFoundError as error:

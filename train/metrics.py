@@ -45,9 +45,13 @@ class ReadingMetrics(nn.Module):
                 for name in PIGMENTS:
                     pair = getattr(reading.maps, name)[skin], getattr(batch.truth, name)[skin]
                     pairs |= dict.fromkeys((name, f"{name}_r", f"{name}_constant"), pair)
+        updated = {}
         for name, pair in pairs.items():
-            self.metrics[name].update(*pair)
-        return {name: metric for name, metric in self.metrics.items() if name in pairs}
+            metric = self.metrics[name]
+            assert isinstance(metric, Metric)
+            metric.update(*pair)
+            updated[name] = metric
+        return updated
 
 
 class StandardDeviation(Metric):
@@ -69,4 +73,5 @@ class StandardDeviation(Metric):
     def compute(self) -> Tensor:
         """Compute the standard deviation of all targets."""
         count, total, squares = self.moments
-        return (squares / count - (total / count) ** 2).clamp_min(0).sqrt()
+        variance: Tensor = squares / count - (total / count) ** 2
+        return variance.clamp_min(0).sqrt()

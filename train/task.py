@@ -8,6 +8,7 @@ import torch
 from jsonargparse.typing import NonNegativeFloat, NonNegativeInt, PositiveFloat, PositiveInt
 from kornia.color import rgb_to_linear_rgb
 from lightning import LightningModule
+from lightning.pytorch.utilities.types import OptimizerLRSchedulerConfig
 from torch import Tensor, nn
 from torch.optim import AdamW, Optimizer
 from torch.optim.lr_scheduler import LambdaLR
@@ -96,11 +97,11 @@ class SkinTask(LightningModule):
         weights: str | None = None,
     ) -> None:
         super().__init__()
-        model = SkinAutoencoder(
+        self.model = SkinAutoencoder(
             AutoencoderConfig(optics, tuple(map(int, widths)), int(working_size))
         )
-        # A third faster on a CPU.
-        self.model = model.to(memory_format=torch.channels_last)
+        # A third faster on a CPU; torch's types leave memory formats out.
+        self.model.to(memory_format=torch.channels_last)  # type: ignore[call-overload]
         self.weight_of = losses
         # Plain numbers: restricted ones end in the optimizer's state, which weights_only refuses.
         self.learning_rate = float(learning_rate)
@@ -186,7 +187,7 @@ class SkinTask(LightningModule):
         )
         return dict(zip(batches, readings, strict=True))
 
-    def configure_optimizers(self) -> dict[str, Any]:
+    def configure_optimizers(self) -> OptimizerLRSchedulerConfig:
         """Set up AdamW with warm-up and cosine annealing."""
         optimizer: Optimizer = AdamW(
             self.parameters(), lr=self.learning_rate, weight_decay=self.weight_decay
@@ -202,8 +203,9 @@ class SkinTask(LightningModule):
 
     def on_save_checkpoint(self, checkpoint: dict[str, Any]) -> None:
         """Describe the model, so that `SkinAutoencoder.from_pretrained` can load it."""
-        data = getattr(self.trainer.datamodule, "description", "unknown data")
-        self.model.trained_on = f"{self.trained_on}{data}, {self.global_step} steps"
+        data = getattr(self.trainer, "datamodule", None)
+        description = getattr(data, "description", "unknown data")
+        self.model.trained_on = f"{self.trained_on}{description}, {self.global_step} steps"
         checkpoint["skinnet"] = self.model.describe()
 
 

@@ -97,7 +97,7 @@ class SkinEncoder(nn.Module):
         self.white_balance = nn.Linear(2, global_channels, bias=False)
         self.up = nn.ModuleList(_Merge(coarse, fine) for fine, coarse in reversed(pairs))
         self.head = _Head(widths[0], deepest, map_channels)
-        self.register_load_state_dict_pre_hook(_rename_earlier_weights)
+        nn.Module.register_load_state_dict_pre_hook(self, _rename_earlier_weights)
 
     def forward(
         self,

@@ -30,15 +30,16 @@ def train_twice(arguments: list[str]) -> subprocess.CompletedProcess[str]:
     )
 
 
-def losses(run: Path) -> list[tuple[str, str, float]]:
-    """Every training loss of a run with its step and name."""
+def read_curves(run: Path) -> list[tuple[str, str, float]]:
+    """Every training loss and validation metric of a run, with its step and name."""
+    kept = ("train/", "val/synthetic_")
     with (run / "metrics.csv").open() as file:
-        rows = [row for row in csv.DictReader(file) if row["metric"].startswith("train/")]
+        rows = [row for row in csv.DictReader(file) if row["metric"].startswith(kept)]
     return [(row["step"], row["metric"], float(row["value"])) for row in rows]
 
 
 @pytest.mark.slow
-def test_two_processes_have_the_samples_and_losses_of_one(
+def test_two_processes_have_the_samples_losses_and_metrics_of_one(
     fit: Fit, fit_arguments: Arguments, tmp_path: Path
 ) -> None:
     one, two, notes = (tmp_path / name for name in ("one", "two", "notes"))
@@ -55,8 +56,12 @@ def test_two_processes_have_the_samples_and_losses_of_one(
         part = slice(8 * epoch, 8 * epoch + 8)
         seen = [*drawn[0][part], *drawn[1][part]]
         assert sorted(seen) == list(range(16 * epoch, 16 * epoch + 16))
-    for ours, theirs in zip(losses(two), losses(one), strict=True):
-        assert ours[:2] == theirs[:2] and ours[2] == pytest.approx(theirs[2], rel=1e-5, abs=1e-6)
+    curves = [sorted(read_curves(run)) for run in (two, one)]
+    assert any(name == "val/synthetic_melanin_r" for _, name, _ in curves[0])
+    for ours, theirs in zip(*curves, strict=True):
+        # Evaluation uses running statistics of the batches, whose rounding errors accumulate.
+        rel, least = (1e-5, 1e-6) if ours[1].startswith("train/") else (5e-3, 1e-3)
+        assert ours[:2] == theirs[:2] and ours[2] == pytest.approx(theirs[2], rel=rel, abs=least)
 
     assert {"last.ckpt", "best.ckpt", "config.yaml"} <= {path.name for path in two.iterdir()}
     assert sorted(path.name for path in tmp_path.glob("two*")) == ["two", "two.1"]
