@@ -63,12 +63,12 @@ def load_basel_2009(path: Path) -> ShapeModel:
 
 
 def load_basel_2017(path: Path) -> ShapeModel:
-    """An .h5 of the models of 2017 or 2019 (Gerig et al. 2018), in millimetres: the neutral shape.
+    """Load an .h5 of the models of 2017 or 2019 (Gerig et al. 2018): the neutral shape, in mm.
 
-    Statismo's layout: `shape/model/mean` [3N], `pcaBasis` [3N, S], `pcaVariance` [S] and
-    `shape/representer/cells` [3, T]; `metadata/landmarks/json` names points, of which 17 of the 20
-    landmarks of a fit (not the bridge of the nose and the outer ends of the brows) become the
-    nearest vertices of the mean. Raises `InputError` for another layout.
+    The layout is Statismo's: `shape/model/mean` [3N], `pcaBasis` [3N, S], `pcaVariance` [S] and
+    `shape/representer/cells` [3, T]. `metadata/landmarks/json` names points. Of these, 17 of the 20
+    landmarks of a fit become the nearest vertices of the mean; the bridge of the nose and the outer
+    ends of the brows are missing. Raises `InputError` for another layout.
     """
     try:
         with h5py.File(path, "r") as file:

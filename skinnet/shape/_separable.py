@@ -106,8 +106,8 @@ class SeparableObjective:
             return np.asarray(cho_solve(cho_factor(design), right))
         except np.linalg.LinAlgError as error:
             raise InputError(
-                f"{len(self.variances)} modes cannot be distinguished by these correspondences; use "
-                "fewer modes or a MAP weight above 0."
+                f"{len(self.variances)} modes cannot be distinguished by these correspondences; "
+                "use fewer modes or a MAP weight above 0."
             ) from error
 
 

@@ -13,7 +13,7 @@ class FitSettings:
         kept: share of the model's vertices, those with the closest matches, that a step fits.
         normals: measure to the scan's tangent planes, and drop matches with another orientation.
         sliding: with `normals`, the weight in [0, 1] of a squared residual along the surface.
-        angle: with `normals`, the largest angle in degrees between a vertex' normal and its
+        angle: with `normals`, the largest angle in degrees between a vertex's normal and its
         match's. map_weight: weight of the prior on the coefficients, relative to 1,000 matched
         points that are
             accurate to 1 mm, however many are matched; 0 is the paper's fit.

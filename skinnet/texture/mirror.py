@@ -19,7 +19,7 @@ def find_mirror_vertices(
             largest extent.
 
     Returns:
-        The index of each vertex' image, which is the vertex itself in the plane of symmetry; None
+        The index of each vertex's image, which is the vertex itself in the plane of symmetry; None
         if the mesh is not symmetric.
 
     Example:

@@ -211,7 +211,7 @@ def _compute_stretch(
     uv: Float[np.ndarray, "vertices 2"],
     triangles: Int[np.ndarray, "triangles 3"],
 ) -> Float[np.ndarray, "vertices"]:
-    """Compute each vertex' stretch (Sander et al. 2001).
+    """Compute each vertex's stretch (Sander et al. 2001).
 
     That is the root mean square length on the surface of a unit in the texture, averaged over the
     triangles at the vertex by their area.
