@@ -1,10 +1,12 @@
 """Several processes train as one does."""
 
 import csv
+import json
 import os
 import subprocess
 import sys
 from collections.abc import Callable
+from importlib import import_module
 from pathlib import Path
 
 import pytest
@@ -30,16 +32,15 @@ def train_twice(arguments: list[str]) -> subprocess.CompletedProcess[str]:
     )
 
 
-def read_curves(run: Path) -> list[tuple[str, str, float]]:
-    """Every training loss and validation metric of a run, with its step and name."""
-    kept = ("train/", "val/synthetic_")
+def losses(run: Path) -> list[tuple[str, str, float]]:
+    """Every training loss of a run with its step and name."""
     with (run / "metrics.csv").open() as file:
-        rows = [row for row in csv.DictReader(file) if row["metric"].startswith(kept)]
+        rows = [row for row in csv.DictReader(file) if row["metric"].startswith("train/")]
     return [(row["step"], row["metric"], float(row["value"])) for row in rows]
 
 
 @pytest.mark.slow
-def test_two_processes_have_the_samples_losses_and_metrics_of_one(
+def test_two_processes_have_the_samples_and_losses_of_one(
     fit: Fit, fit_arguments: Arguments, tmp_path: Path
 ) -> None:
     one, two, notes = (tmp_path / name for name in ("one", "two", "notes"))
@@ -56,12 +57,8 @@ def test_two_processes_have_the_samples_losses_and_metrics_of_one(
         part = slice(8 * epoch, 8 * epoch + 8)
         seen = [*drawn[0][part], *drawn[1][part]]
         assert sorted(seen) == list(range(16 * epoch, 16 * epoch + 16))
-    curves = [sorted(read_curves(run)) for run in (two, one)]
-    assert any(name == "val/synthetic_melanin_r" for _, name, _ in curves[0])
-    for ours, theirs in zip(*curves, strict=True):
-        # Evaluation uses running statistics of the batches, whose rounding errors accumulate.
-        rel, least = (1e-5, 1e-6) if ours[1].startswith("train/") else (5e-3, 1e-3)
-        assert ours[:2] == theirs[:2] and ours[2] == pytest.approx(theirs[2], rel=rel, abs=least)
+    for ours, theirs in zip(losses(two), losses(one), strict=True):
+        assert ours[:2] == theirs[:2] and ours[2] == pytest.approx(theirs[2], rel=1e-5, abs=1e-6)
 
     assert {"last.ckpt", "best.ckpt", "config.yaml"} <= {path.name for path in two.iterdir()}
     assert sorted(path.name for path in tmp_path.glob("two*")) == ["two", "two.1"]
@@ -80,3 +77,20 @@ def test_both_processes_stop_in_words_when_one_has_a_broken_loss(
     assert "step 5, where losses are not finite" in done.stderr
     assert "Traceback" not in done.stderr
     assert (run / "last.ckpt").is_file()
+
+
+@pytest.mark.slow
+def test_metrics_of_two_processes_are_those_of_all_pictures(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.syspath_prepend(Path(__file__).parent)
+    whole = import_module("two_processes").measure((0, 1))
+    environment = {**os.environ, "PYTHONPATH": os.pathsep.join([".", str(Path(__file__).parent)])}
+    command = [sys.executable, "-m", "two_processes", str(tmp_path / "meeting")]
+    started = [
+        subprocess.Popen([*command, str(rank)], env=environment, stdout=subprocess.PIPE, text=True)
+        for rank in range(2)
+    ]
+    found = [json.loads(process.communicate(timeout=300)[0]) for process in started]
+    for each in found:
+        assert each == pytest.approx(whole, rel=1e-5)

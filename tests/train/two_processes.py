@@ -1,11 +1,18 @@
-"""A callback for the processes of a distributed run, which a test cannot reach into."""
+"""What runs in the processes of a distributed run, which a test cannot reach into."""
 
+import json
+import sys
+from collections.abc import Sequence
 from pathlib import Path
 
 import torch
 from lightning import Callback, LightningModule, Trainer
 from torch import Tensor, distributed, nn
 
+from skinnet.network import Reading, SkinMaps
+from skinnet.physics import SpectralCamera
+from train.batch import Batch
+from train.metrics import ReadingMetrics
 from train.synthetic.faces import SyntheticScenes
 
 
@@ -74,3 +81,29 @@ class Witness(Callback):
     ) -> None:
         if trainer.global_rank == 1 and trainer.global_step == self.break_at:
             batch.photograph.fill_(float("nan"))  # type: ignore[attr-defined]
+
+
+def measure(seeds: Sequence[int]) -> dict[str, float]:
+    """Metrics of random readings of random pictures, one batch for each seed."""
+    metrics = ReadingMetrics()
+    for seed in seeds:
+        rng = torch.Generator().manual_seed(seed)
+        count = 1 + 2 * seed
+        maps = [0.1 * torch.rand(2, count, 8, 8, generator=rng) for _ in range(5)]
+        guess, truth = (
+            SkinMaps(*(one[i] for one in maps[:4]), torch.zeros(count, 3, 8, 8), 8 * maps[4][i])
+            for i in range(2)
+        )
+        photograph, made = torch.rand(2, count, 3, 8, 8, generator=rng)
+        capture = SpectralCamera().standard((count,))
+        metrics.update(Reading(guess, capture, made), Batch(photograph, truth.mask, truth, capture))
+    return {name: metric.compute().item() for name, metric in metrics.metrics.items()}
+
+
+if __name__ == "__main__":
+    rank = int(sys.argv[2])
+    distributed.init_process_group(
+        "gloo", init_method=f"file://{sys.argv[1]}", rank=rank, world_size=2
+    )
+    print(json.dumps(measure([rank])))
+    distributed.destroy_process_group()
