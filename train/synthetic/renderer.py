@@ -5,11 +5,10 @@ from typing import NamedTuple
 import torch
 import torch.nn.functional as F
 from jaxtyping import Float, Int8, UInt8
-from kornia.color import rgb_to_grayscale
 from torch import Tensor
 
 from skinnet.network.autoencoder import SHADING_MAX, SkinMaps
-from skinnet.physics import Capture, SkinDecoder
+from skinnet.physics import Capture, SkinDecoder, luminance
 from skinnet.shape.procedural_head import CHART_EXTENT
 from train.batch import Batch
 from train.synthetic.face_painting import FaceCharts, paint_face
@@ -126,7 +125,7 @@ def _sample_charts(charts: FaceCharts, place: Float[Tensor, "batch 2 height widt
 
 
 def _expose(camera: CameraParameters, linear: Image, share: Map) -> Float[Tensor, "batch 1 1 1"]:
-    light = rgb_to_grayscale(linear)
+    light = luminance(linear)
     mean = (light * share).sum((1, 2, 3)) / share.sum((1, 2, 3)).clamp_min(1)
     correction = (_METERED / mean.clamp(0.01, 1)) ** camera.metering
     return expand_scalar((camera.exposure * correction).clamp(0.15, 5))

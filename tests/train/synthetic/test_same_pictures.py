@@ -9,8 +9,8 @@ from torch.utils.data import default_collate
 from train.batch import Batch
 from train.synthetic.faces import SyntheticFaces, SyntheticScenes
 
-TRAIN = (0.21828683, 0.0242834, 0.02715974, 0.05323386, 0.00266205, 0.07614503, 0.16027005)
-TEST = (0.29022822, 0.03692688, 0.02704669, 0.04654461, 0.00173474, 0.21097112, 0.21221191)
+TRAIN = (0.21912456, 0.0242834, 0.02715974, 0.0537778, 0.00268468, 0.07689927, 0.16027005)
+TEST = (0.29194102, 0.03692688, 0.02704669, 0.04756396, 0.00177844, 0.2123137, 0.21221191)
 
 
 def describe(batch: Batch) -> Iterator[float]:
