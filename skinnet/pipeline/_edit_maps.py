@@ -18,6 +18,7 @@ from skinnet.pipeline._maps_writer import add_texture, draw_pigments, fill_albed
 from skinnet.pipeline._output import MAPS_END, add_end, add_output, make_output_folder
 from skinnet.pipeline._progress import log
 from skinnet.pipeline.relight import RelightSettings
+from skinnet.render.scene import Scene
 
 RENAMED = {
     "relight.turn": "relight.yaw",
@@ -112,7 +113,8 @@ def _write_faces(
     """Write the edited face as a mesh and as a picture; draw tiles of it before and after."""
     face, after = read_mesh(mesh), textures[1]
     albedos = [fill_albedo(one.albedo(colour), one) for one in textures]
-    pictures = [relight.render(face, albedo) for albedo in albedos]
+    scene = Scene(face)
+    pictures = [relight.render(scene, albedo) for albedo in albedos]
     write_png(add_end(stem, "_render.png"), pictures[1])
     write_mesh(
         add_end(stem, "_face.obj"), add_texture(face, show_albedo(after.albedo(colour), after))

@@ -16,6 +16,7 @@ from skinnet.inference.panel import BLANK, draw_grid, draw_picture, draw_pigment
 from skinnet.mesh.mesh import Mesh
 from skinnet.mesh.mesh_file import write_mesh
 from skinnet.pipeline import relight
+from skinnet.render.scene import Scene
 
 _FLUSH, _TAN = 2.0, 1.5
 """Factors of hemoglobin and of melanin in Figure 6 of Alotaibi & Smith 2017."""
@@ -78,7 +79,7 @@ def draw_maps_panel(
 
     They are in the manner of Figures 4 and 6 of Alotaibi & Smith 2017.
     """
-    settings = relight.RelightSettings(size=relight.TILE_SIZE)
+    settings, scene = relight.RelightSettings(size=relight.TILE_SIZE), Scene(face)
     flushed = edit_texture(texture, PigmentEdit(), PigmentEdit(_FLUSH))
     tanned = edit_texture(texture, PigmentEdit(_TAN), PigmentEdit())
     faces = {
@@ -94,7 +95,7 @@ def draw_maps_panel(
         *draw_pigments(texture),
         draw_picture("skin without offset", show_albedo(plain.albedo(colour), texture)),
         *(
-            draw_picture(name, settings.render(face, fill_albedo(one.albedo(colour), one)))
+            draw_picture(name, settings.render(scene, fill_albedo(one.albedo(colour), one)))
             for name, one in faces.items()
         ),
     ]

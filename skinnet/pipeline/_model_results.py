@@ -19,6 +19,7 @@ from skinnet.pipeline import relight
 from skinnet.pipeline._fit_archive import load_fit
 from skinnet.pipeline._model_figures import AlbedoRenderer, draw_hybrid, draw_linear, plot_measures
 from skinnet.pipeline._output import MAPS_END
+from skinnet.render.scene import Scene
 
 
 def make_renderer(files: list[Path]) -> AlbedoRenderer | None:
@@ -33,8 +34,8 @@ def make_renderer(files: list[Path]) -> AlbedoRenderer | None:
     shapes = [fit.pose.apply_inverse(fit.vertices) for fit in archives]
     if any(shape.shape != face.vertices.shape for shape in shapes):
         return None
-    face = replace(face, vertices=np.mean(shapes, 0))
-    return partial(relight.RelightSettings(size=relight.TILE_SIZE).render, face)
+    scene = Scene(replace(face, vertices=np.mean(shapes, 0)))
+    return partial(relight.RelightSettings(size=relight.TILE_SIZE).render, scene)
 
 
 def write_models(

@@ -11,6 +11,7 @@ from skinnet.inference.panel import TILE
 from skinnet.mesh.mesh import Mesh
 from skinnet.render.lights import DirectionalLight, Light, SphericalHarmonics
 from skinnet.render.rendering import SKIN_SPECULAR, render
+from skinnet.render.scene import Scene
 from skinnet.render.views import frame_face
 
 TILE_SIZE = TILE
@@ -81,18 +82,20 @@ class RelightSettings:
         return [*lamps, SphericalHarmonics.sky((self.above,) * 3, (self.below,) * 3)]
 
     def render(
-        self, mesh: Mesh, albedo: Float32[np.ndarray, "size size 3"]
+        self, mesh: Mesh | Scene, albedo: Float32[np.ndarray, "size size 3"]
     ) -> UInt8[np.ndarray, "h w 3"]:
         """Render a face.
 
         Args:
-            mesh: the face, upright, with texture coordinates; it looks along +z.
+            mesh: the face, upright, with texture coordinates; it looks along +z. A `Scene` of it
+                is shared between several pictures.
             albedo: linear RGB over the texture coordinates.
 
         Returns:
             The picture, uint8 sRGB.
         """
-        view = frame_face(mesh.vertices, (self.size, self.size), self.yaw, self.pitch)
+        vertices = mesh.mesh.vertices if isinstance(mesh, Scene) else mesh.vertices
+        view = frame_face(vertices, (self.size, self.size), self.yaw, self.pitch)
         gloss = SKIN_SPECULAR if self.gloss else 0.0
         grey = (0.75, 0.75, 0.75)
         return render(mesh, albedo, self.lights(), view, 2, self.shadows, gloss, background=grey)
