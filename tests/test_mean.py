@@ -47,5 +47,5 @@ def test_other_shapes_and_missing_files_end_in_a_sentence(
     checkpoint(last, 1, width=6)
     for other in (first, last, tmp_path / "none.ckpt"):
         assert main([str(first), str(other), "-o", str(out)]) == 2
-        said = capsys.readouterr().err
-        assert str(other) in said and "Traceback" not in said and not out.exists()
+        message = capsys.readouterr().err
+        assert str(other) in message and "Traceback" not in message and not out.exists()

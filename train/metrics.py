@@ -13,7 +13,7 @@ PIGMENTS = ("melanin", "hemoglobin")
 
 
 class ReadingMetrics(nn.Module):
-    """Errors over the skin of all pictures that one kind of data has shown.
+    """Errors over the skin of all pictures of one kind of data.
 
     Pixels are accumulated over batches and processes, so that each counts once. `reconstruction`
     is the RMSE in linear sRGB, clipped to [0, 1], and `mask_iou` the intersection over union of

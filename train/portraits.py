@@ -90,7 +90,7 @@ def augment(crop: Crop, rng: np.random.Generator) -> Crop:
 
 
 class Portraits(LightningDataModule):
-    """Photographs of faces, found, cropped and masked by `skinnet.images.faces`.
+    """Photographs of faces, cropped and masked by `skinnet.images`.
 
     Unreadable pictures and pictures without a face are skipped, counted, and listed in
     `skipped.csv` of the run. Every step also sees a batch of `synthetic` faces, so that the maps

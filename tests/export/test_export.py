@@ -1,4 +1,4 @@
-"""Exported files give torch's numbers, say what they are, and refuse what they are not."""
+"""Exported files have torch's numbers and their metadata; other files are refused."""
 
 import json
 import os
@@ -44,16 +44,16 @@ def test_three_files_are_written_and_nothing_else(exported: Path) -> None:
 
 
 @pytest.mark.parametrize("name", ["skin.onnx", "skin.decoder.onnx"])
-def test_a_file_is_whole_and_says_what_it_is(exported: Path, name: str) -> None:
+def test_a_file_is_complete_and_has_its_metadata(exported: Path, name: str) -> None:
     file = onnx.load(exported.with_name(name), load_external_data=False)
     assert file.opset_import[0].version >= 18
     assert all(not tensor.external_data for tensor in file.graph.initializer)
-    said = {entry.key: entry.value for entry in file.metadata_props}
-    outputs = json.loads(said["skinnet.outputs"])
+    message = {entry.key: entry.value for entry in file.metadata_props}
+    outputs = json.loads(message["skinnet.outputs"])
     assert [output.name for output in file.graph.output] == list(outputs)
     assert all({"unit", "range", "description"} <= set(output) for output in outputs.values())
-    assert said["skinnet.working_size"] == "48" and said["skinnet.license"] == "MIT"
-    assert said["skinnet.trained_on"] == "nothing at all"
+    assert message["skinnet.working_size"] == "48" and message["skinnet.license"] == "MIT"
+    assert message["skinnet.trained_on"] == "nothing at all"
 
 
 def test_encoder_and_decoder_make_the_reconstruction_of_torch(exported: Path) -> None:
@@ -74,10 +74,10 @@ def test_encoder_and_decoder_make_the_reconstruction_of_torch(exported: Path) ->
 
 def test_outputs_lie_in_their_stated_ranges(exported: Path) -> None:
     session = onnxruntime.InferenceSession(exported)
-    said = json.loads(session.get_modelmeta().custom_metadata_map["skinnet.outputs"])
+    message = json.loads(session.get_modelmeta().custom_metadata_map["skinnet.outputs"])
     noise = torch.randint(0, 256, (1, 64, 64, 3), dtype=torch.uint8).numpy()
     for (name, output), value in zip(
-        said.items(), session.run(None, {"image": noise}), strict=True
+        message.items(), session.run(None, {"image": noise}), strict=True
     ):
         low, high = output["range"]
         assert low <= value.min() and value.max() <= high, name
@@ -85,7 +85,7 @@ def test_outputs_lie_in_their_stated_ranges(exported: Path) -> None:
 
 @pytest.mark.parametrize("suffix", [".ckpt", ".safetensors"])
 @pytest.mark.parametrize("content", [None, b"", b"not a model", "foreign"])
-def test_what_is_no_model_is_refused(
+def test_a_file_without_a_model_is_refused(
     suffix: str, content: bytes | str | None, tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
     path = tmp_path / f"model{suffix}"
@@ -161,15 +161,15 @@ def test_a_truncated_weights_file_is_refused(
 
 
 @pytest.mark.parametrize(
-    ("output", "said"),
+    ("output", "message"),
     [("skin.txt", ".onnx"), ("no/skin.onnx", "folder"), ("folder.onnx", "is a folder")],
 )
 def test_an_output_that_cannot_be_written_is_refused_first(
-    output: str, said: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+    output: str, message: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
     (tmp_path / "folder.onnx").mkdir()
     assert main(["absent.ckpt", "-o", str(tmp_path / output)]) == 2
-    assert said in capsys.readouterr().err
+    assert message in capsys.readouterr().err
 
 
 def test_weights_survive_a_round_trip(tmp_path: Path) -> None:

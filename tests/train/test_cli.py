@@ -155,7 +155,7 @@ def test_a_checkpoint_that_is_none_is_refused(
 
 
 @pytest.mark.parametrize(
-    ("argument", "said"),
+    ("argument", "message"),
     [
         ("--model.nonsense=1", "nonsense"),
         ("--model.learning_rate=-1", "learning_rate"),
@@ -165,11 +165,11 @@ def test_a_checkpoint_that_is_none_is_refused(
     ],
 )
 def test_an_unknown_key_or_a_value_out_of_range_is_named(
-    fit: Fit, tmp_path: Path, argument: str, said: str, capsys: pytest.CaptureFixture[str]
+    fit: Fit, tmp_path: Path, argument: str, message: str, capsys: pytest.CaptureFixture[str]
 ) -> None:
     assert fit(tmp_path / "run", argument) == 2
     (sentence,) = capsys.readouterr().err.splitlines()
-    assert sentence.startswith("train: ") and said in sentence
+    assert sentence.startswith("train: ") and message in sentence
     assert not (tmp_path / "run").exists()
 
 
@@ -241,8 +241,8 @@ def test_the_old_key_of_synthetic_faces_is_answered_with_the_new_one(
         ["--config=configs/portraits.yaml", "--data.init_args.twin.heads=3"],
     ):
         assert main(["fit", *arguments]) == 2
-        said = capsys.readouterr().err
-        assert said == "train: 'twin' is now called 'synthetic'; use the new name.\n"
+        message = capsys.readouterr().err
+        assert message == "train: 'twin' is now called 'synthetic'; use the new name.\n"
 
 
 def test_the_old_class_of_synthetic_faces_is_answered_with_the_new_one(
@@ -255,8 +255,8 @@ def test_the_old_class_of_synthetic_faces_is_answered_with_the_new_one(
         ["--config=configs/quick.yaml", "--data=TwinFaces"],
     ):
         assert main(["fit", *arguments]) == 2
-        said = capsys.readouterr().err
-        assert said == "train: 'TwinFaces' is now called 'SyntheticFaces'; use the new name.\n"
+        message = capsys.readouterr().err
+        assert message == "train: 'TwinFaces' is now called 'SyntheticFaces'; use the new name.\n"
 
 
 def test_a_checkpoint_of_version_0_1_is_resumed(fit: Fit, tmp_path: Path) -> None:

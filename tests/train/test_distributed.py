@@ -52,10 +52,10 @@ def test_two_processes_have_the_samples_and_losses_of_one(
     assert done.returncode == 0, done.stderr
     assert fit(one, "--trainer.max_epochs=2") == 0
 
-    drawn = [[int(n) for n in (notes / f"{rank}.txt").read_text().split()] for rank in range(2)]
+    samples = [[int(n) for n in (notes / f"{rank}.txt").read_text().split()] for rank in range(2)]
     for epoch in range(2):
         part = slice(8 * epoch, 8 * epoch + 8)
-        seen = [*drawn[0][part], *drawn[1][part]]
+        seen = [*samples[0][part], *samples[1][part]]
         assert sorted(seen) == list(range(16 * epoch, 16 * epoch + 16))
     for ours, theirs in zip(losses(two), losses(one), strict=True):
         assert ours[:2] == theirs[:2] and ours[2] == pytest.approx(theirs[2], rel=1e-5, abs=1e-6)

@@ -41,9 +41,9 @@ def test_a_loss_that_is_no_number_stops_training_at_the_last_good_step(
     run = tmp_path / "run"
     break_loss(monkeypatch, "lighting", 7)  # four steps, a validation batch, two steps
     assert fit(run, "--trainer.max_epochs=2") == 2
-    said = capsys.readouterr().err
-    assert "step 5, where losses are not finite: train/synthetic_lighting, train/loss." in said
-    assert f"--ckpt_path {run / 'last.ckpt'}" in said
+    message = capsys.readouterr().err
+    assert "step 5, where losses are not finite: train/synthetic_lighting, train/loss." in message
+    assert f"--ckpt_path {run / 'last.ckpt'}" in message
     assert read_checkpoint(run / "last.ckpt")["global_step"] == 5
     model = SkinAutoencoder.from_pretrained(run / "last.ckpt")
     assert not find_not_finite(model.state_dict())
@@ -55,9 +55,9 @@ def test_without_a_checkpoint_the_remedy_is_a_new_run(
 ) -> None:
     break_loss(monkeypatch, "pigment_l1", 1)
     assert fit(tmp_path / "run", "--trainer.max_epochs=1") == 2
-    said = capsys.readouterr().err
-    assert "step 0" in said and "train/synthetic_pigment_l1" in said
-    assert "learning_rate" in said and "ckpt_path" not in said
+    message = capsys.readouterr().err
+    assert "step 0" in message and "train/synthetic_pigment_l1" in message
+    assert "learning_rate" in message and "ckpt_path" not in message
     assert not (tmp_path / "run" / "last.ckpt").exists()
 
 

@@ -49,9 +49,9 @@ def test_pictures_without_a_face_are_skipped_and_counted(
     crops, skipped = find_crops(tmp_path, 32, unreadable_share=0.4)
     assert len(crops) == 1
     assert [each.path.name for each in skipped] == ["black.png", "broken.jpg"]
-    (said,) = capsys.readouterr().err.splitlines()
-    assert "1 faces, 2 pictures skipped" in said
-    assert "1 without a face; 1 unreadable" in said and "broken.jpg" in said
+    (message,) = capsys.readouterr().err.splitlines()
+    assert "1 faces, 2 pictures skipped" in message
+    assert "1 without a face; 1 unreadable" in message and "broken.jpg" in message
 
 
 def test_more_unreadable_pictures_than_the_share_are_refused(tmp_path: Path) -> None:
@@ -62,8 +62,8 @@ def test_more_unreadable_pictures_than_the_share_are_refused(tmp_path: Path) -> 
         InputError, match=r"9 of 10 pictures in .* cannot be read .90%, and 80%"
     ) as no:
         find_crops(tmp_path, 32, unreadable_share=0.8)
-    said = str(no.value)
-    assert "broken_4.jpg and 4 more" in said and "unreadable_share" in said
+    message = str(no.value)
+    assert "broken_4.jpg and 4 more" in message and "unreadable_share" in message
     assert len(find_crops(tmp_path, 32, unreadable_share=0.9)[1]) == 9
 
 
@@ -150,10 +150,10 @@ def test_every_epoch_shows_every_photograph_once_in_its_own_order(
 def test_photographs_vary_by_seed_epoch_and_index_alone() -> None:
     grey = [Crop(np.full((2, 2, 3), 120, np.uint8), np.zeros((2, 2), np.uint8))]
     first, again, other = (Crops(grey, seed) for seed in (1, 1, 2))
-    drawn = [[crops[index].photograph for index in range(50)] for crops in (first, again, other)]
-    np.testing.assert_array_equal(drawn[0], drawn[1])
-    assert (np.array(drawn[0]) != drawn[2]).any()
-    light = np.log(srgb_to_linear(np.array(drawn[0])[:, 0, 0]))
+    samples = [[crops[index].photograph for index in range(50)] for crops in (first, again, other)]
+    np.testing.assert_array_equal(samples[0], samples[1])
+    assert (np.array(samples[0]) != samples[2]).any()
+    light = np.log(srgb_to_linear(np.array(samples[0])[:, 0, 0]))
     assert 0.7 * EXPOSURE_SD < light[:, 1].std() < 1.3 * EXPOSURE_SD
     warmth = (light[:, 0] - light[:, 1]).std()
     assert 0.7 * WHITE_BALANCE_SD < warmth < 1.3 * WHITE_BALANCE_SD
@@ -190,5 +190,5 @@ def test_photographs_kept_for_validation_are_left_as_they_are(tmp_path: Path) ->
     blank = make_blank_cast(16).to_buffers()
     data.synthetic.buffers = {"val": HeadBuffers(*(one[None] for one in blank))}
     loader = data.val_dataloader().iterables["portraits"]
-    shown = np.concatenate([batch.photograph for batch in loader])
-    np.testing.assert_array_equal(shown, pictures)
+    loaded = np.concatenate([batch.photograph for batch in loader])
+    np.testing.assert_array_equal(loaded, pictures)

@@ -26,8 +26,8 @@ class _Sum(torch.autograd.Function):
         return value
 
     @staticmethod
-    def backward(ctx: object, slope: Tensor) -> Tensor:
-        return _Sum.forward(ctx, slope)
+    def backward(ctx: object, gradient: Tensor) -> Tensor:
+        return _Sum.forward(ctx, gradient)
 
 
 class SharedBatchNorm(nn.BatchNorm2d):

@@ -81,8 +81,8 @@ def test_without_skin_the_offset_is_the_photograph() -> None:
     maps, _ = _activate(raw, torch.zeros(1, _GLOBAL_CHANNELS), linear)
     left = torch.tensor([[1.0, 0.5], [0.0, 0.5]])
     torch.testing.assert_close(maps.offset, left * linear)
-    (slope,) = torch.autograd.grad(maps.offset.sum() + 0 * raw.sum(), raw)
-    assert not slope.any()  # or the best explanation would be no skin at all
+    (gradient,) = torch.autograd.grad(maps.offset.sum() + 0 * raw.sum(), raw)
+    assert not gradient.any()  # or the best explanation would be no skin at all
 
 
 def test_the_vote_on_the_tint_reaches_the_white_balance_directly(model: SkinAutoencoder) -> None:

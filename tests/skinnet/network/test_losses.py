@@ -85,9 +85,9 @@ def test_error_shading_covariance_rewards_an_error_that_rises_with_shading() -> 
     assert cut.item() == pytest.approx(-more * (2 - losses.MEAN_SHADING), rel=1e-4)
     found = losses.error_shading_covariance(maps(melanin=guess), maps(shading=shading))
     assert found.item() == pytest.approx(0, abs=1e-6)
-    (slope,) = torch.autograd.grad(found, guess)
-    assert (slope[shading > losses.MEAN_SHADING] < 0).all() and (
-        slope[shading < losses.MEAN_SHADING] > 0
+    (gradient,) = torch.autograd.grad(found, guess)
+    assert (gradient[shading > losses.MEAN_SHADING] < 0).all() and (
+        gradient[shading < losses.MEAN_SHADING] > 0
     ).all()
 
 
