@@ -19,7 +19,7 @@ FAST = ("--fit.stages", "[[500, 10, 30.0], [2000, 0, 0.1]]")
 
 
 def pigments(seed: int, size: int = 64) -> tuple[torch.Tensor, torch.Tensor]:
-    """Smooth maps of melanin and hemoglobin over a texture [1, n, n]."""
+    """Make smooth maps of melanin and hemoglobin over a texture [1, n, n]."""
     rng = torch.Generator().manual_seed(seed)
     noise = torch.rand(2, 1, 5, 5, generator=rng)
     smooth = torch.nn.functional.interpolate(noise, (size, size), mode="bicubic")[:, 0].clamp(0, 1)
@@ -28,7 +28,7 @@ def pigments(seed: int, size: int = 64) -> tuple[torch.Tensor, torch.Tensor]:
 
 
 def write_scan(path: Path, seed: int, scale: float = 1.0) -> None:
-    """A textured face with its landmarks, turned a little; `scale` is units a millimetre."""
+    """Write a textured face with its landmarks, rotated a little; `scale` is units a mm."""
     model = load_shape_model()
     rng = np.random.default_rng(seed)
     alpha = rng.normal(size=len(model.variances)) * np.sqrt(model.variances)

@@ -167,10 +167,10 @@ def compute_components(
 
 
 def _describe_excess(asked: int, gram: Float[np.ndarray, "subjects subjects"]) -> str:
-    found = len(compute_axes(gram, len(gram)).lengths)
+    rank = len(compute_axes(gram, len(gram)).lengths)
     return (
-        f"{asked} components were asked for, and {len(gram)} subjects span {found}; ask for 1 to "
-        f"{found}, or give more subjects."
+        f"{asked} components were asked for, and {len(gram)} subjects span {rank}; ask for 1 to "
+        f"{rank}, or give more subjects."
     )
 
 

@@ -136,9 +136,13 @@ class JointModel(nn.Module):
         Raises:
             InputError: if the path does not end in .npz or cannot be written.
         """
-        found = self.statistics
-        header = {"weight": self.weight, "total": found.total, "subjects": found.subjects}
-        arrays = {name: getattr(found, name) for name in _model_arrays.STATISTICS}
+        statistics = self.statistics
+        header = {
+            "weight": self.weight,
+            "total": statistics.total,
+            "subjects": statistics.subjects,
+        }
+        arrays = {name: getattr(statistics, name) for name in _model_arrays.STATISTICS}
         arrays["deviations"] = self.deviations
         _model_arrays.write_arrays(path, type(self).__name__, header, arrays)
 

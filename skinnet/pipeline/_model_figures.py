@@ -36,13 +36,13 @@ def plot_measures(path: Path, measures: Sequence[Measures]) -> None:
     Source:
         Figure 8 of Alotaibi & Smith 2017.
     """
-    shapes = any(found.shape_generalisation is not None for found in measures)
+    shapes = any(one.shape_generalisation is not None for one in measures)
     figure = Figure(figsize=(15.5 if shapes else 10.5, 8.4), layout="constrained")
     FigureCanvasAgg(figure)
     axes = figure.subplots(2, 3 if shapes else 2)
     share = "cumulative variance, %"
-    _plot(axes[0, 0], measures, _compactness, "(a) compactness in own features", share)
-    _plot(axes[0, 1], measures, _in_colour, "(b) compactness in linear RGB", share)
+    _plot(axes[0, 0], measures, _own_compactness, "(a) compactness in own features", share)
+    _plot(axes[0, 1], measures, _colour_compactness, "(b) compactness in linear RGB", share)
     error, distance = "RMS error left out", "RMS to the nearest subject"
     for axis, field, title, label in (
         (axes[1, 0], "generalisation", "(c) generalisation", f"{error}, linear RGB"),
@@ -50,21 +50,22 @@ def plot_measures(path: Path, measures: Sequence[Measures]) -> None:
         (axes[0, -1], "shape_generalisation", "(e) generalisation of shape", f"{error}, mm"),
         (axes[1, -1], "shape_specificity", "(f) specificity of shape", f"{distance}, mm"),
     )[: 4 if shapes else 2]:
-        _plot(axis, measures, partial(_mean, field), title, label)
+        _plot(axis, measures, partial(_mean_curve, field), title, label)
     with write_atomically(path) as part:
         figure.savefig(part, format="png", dpi=110)
 
 
-def _compactness(found: Measures) -> Line:
-    return np.arange(1, len(found.compactness) + 1), 100 * found.compactness
+def _own_compactness(measures: Measures) -> Line:
+    return np.arange(1, len(measures.compactness) + 1), 100 * measures.compactness
 
 
-def _in_colour(found: Measures) -> Line:
-    return found.colour_compactness.counts, 100 * found.colour_compactness.mean
+def _colour_compactness(measures: Measures) -> Line:
+    curve = measures.colour_compactness
+    return curve.counts, 100 * curve.mean
 
 
-def _mean(field: str, found: Measures) -> Line | None:
-    curve: Curve | None = getattr(found, field)
+def _mean_curve(field: str, measures: Measures) -> Line | None:
+    curve: Curve | None = getattr(measures, field)
     return None if curve is None else (curve.counts, curve.mean)
 
 
@@ -75,9 +76,9 @@ def _plot(
     title: str,
     label: str,
 ) -> None:
-    for index, found in enumerate(measures):
-        if (points := line(found)) is not None:
-            axis.plot(*points, f"C{index}.-", label=found.name)
+    for index, one in enumerate(measures):
+        if (points := line(one)) is not None:
+            axis.plot(*points, f"C{index}.-", label=one.name)
     axis.set(title=title, xlabel="number of components", ylabel=label)
     axis.set_ylim(bottom=0)
     axis.xaxis.set_major_locator(MaxNLocator(integer=True))

@@ -17,8 +17,8 @@ def without(
 ) -> Callable[[int], SubjectStack]:
     """Makes the stack of everybody but one."""
 
-    def spooled(index: int) -> SubjectStack:
+    def write_others(index: int) -> SubjectStack:
         others = {name: make for i, (name, make) in enumerate(persons.items()) if i != index}
         return write_stack(tmp_path / str(index), others, colour, "people")
 
-    return spooled
+    return write_others

@@ -13,8 +13,9 @@ D = torch.float64
 
 
 def features(*batch: int, texels: int = 11, seed: int = 0) -> torch.Tensor:
-    drawn = torch.rand(*batch, 5, texels, generator=torch.Generator().manual_seed(seed), dtype=D)
-    return drawn * torch.tensor([0.1, 0.4, 0.1, 0.1, 0.1], dtype=D)[:, None]
+    rng = torch.Generator().manual_seed(seed)
+    values = torch.rand(*batch, 5, texels, generator=rng, dtype=D)
+    return values * torch.tensor([0.1, 0.4, 0.1, 0.1, 0.1], dtype=D)[:, None]
 
 
 def test_they_are_the_closed_form_and_the_offset() -> None:

@@ -59,8 +59,8 @@ def test_it_is_a_module_with_gradients() -> None:
 
 def test_samples_have_the_variances_of_the_components() -> None:
     model = JointModel.fit(*people(), DEVIATIONS)
-    drawn = model.sample(20000, seed=0)
-    assert np.allclose(drawn.var(0) / model.statistics.variances, 1, atol=0.05)
+    sampled = model.sample(20000, seed=0)
+    assert np.allclose(sampled.var(0) / model.statistics.variances, 1, atol=0.05)
 
 
 def test_files_hold_the_model_exactly(tmp_path: Path) -> None:

@@ -83,11 +83,11 @@ def test_too_few_texels_are_refused() -> None:
 
 def test_samples_have_the_variances_of_the_components() -> None:
     found = fit(rows())
-    drawn = found.sample(20000, seed=1)
-    assert np.allclose(drawn.mean(0) / np.sqrt(found.variances), 0, atol=0.03)
-    assert np.allclose(drawn.var(0) / found.variances, 1, atol=0.05)
-    assert np.array_equal(found.sample(5, seed=1), drawn[:5])
-    assert not np.array_equal(found.sample(5, seed=2), drawn[:5])
+    sampled = found.sample(20000, seed=1)
+    assert np.allclose(sampled.mean(0) / np.sqrt(found.variances), 0, atol=0.03)
+    assert np.allclose(sampled.var(0) / found.variances, 1, atol=0.05)
+    assert np.array_equal(found.sample(5, seed=1), sampled[:5])
+    assert not np.array_equal(found.sample(5, seed=2), sampled[:5])
 
 
 @pytest.mark.parametrize("asked", [0, -1, 6, 7])

@@ -1,4 +1,4 @@
-"""People are spooled one at a time, resumed, guarded, and read back under a common mask."""
+"""People are read back from a stack, under a common mask."""
 
 import json
 from collections.abc import Callable
@@ -18,7 +18,7 @@ from skinnet.errors import InputError
 Persons = dict[str, Callable[[], SkinTexture]]
 
 
-def without_texels(texture: SkinTexture, rows: slice) -> SkinTexture:
+def remove_texels(texture: SkinTexture, rows: slice) -> SkinTexture:
     mask = texture.mask.copy()
     mask[rows] = False
     f_mel = np.where(mask, texture.f_mel, np.float32(np.nan))
@@ -30,7 +30,7 @@ def patchy(tmp_path: Path, persons: Persons, colour: SkinColour) -> SubjectStack
     """Persons 0 and 1 lack rows 5 and 6, person 2 lacks row 6."""
     cut = {"person 0": slice(5, 7), "person 1": slice(5, 7), "person 2": slice(6, 7)}
     subjects = {
-        name: partial(without_texels, make(), cut.get(name, slice(0, 0)))
+        name: partial(remove_texels, make(), cut.get(name, slice(0, 0)))
         for name, make in persons.items()
     }
     return write_stack(tmp_path / "patchy", subjects, colour, "patchy")
@@ -80,7 +80,7 @@ def test_a_share_fills_with_the_mean_of_the_others(patchy: SubjectStack) -> None
     assert np.array_equal(block[6], patchy.texture(6).features()[:, cover.mask.ravel()])
 
 
-def test_columns_come_in_blocks_of_the_texels_inside(patchy: SubjectStack) -> None:
+def test_blocks_hold_the_texels_inside(patchy: SubjectStack) -> None:
     mask = patchy.cover(share=5 / 7).mask
     (whole,) = patchy.read_blocks(mask)
     for width in (1, 13, 400):
