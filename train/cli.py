@@ -20,7 +20,7 @@ from lightning.pytorch.loggers import TensorBoardLogger
 
 from skinnet.errors import InputError
 from skinnet.network import read_checkpoint
-from skinnet.pipeline.sentence_parser import SentenceParser
+from skinnet.pipeline import SentenceParser
 from train.callbacks import LastCheckpoint, PictureGrid
 from train.fitted import FittedFaces
 from train.guards import FiniteGuard

@@ -1,7 +1,6 @@
 """The autoencoder takes any size, and its outputs are in physical ranges."""
 
 from copy import deepcopy
-from pathlib import Path
 
 import pytest
 import torch
@@ -115,13 +114,3 @@ def test_without_a_path_the_shipped_network_is_loaded() -> None:
     model = SkinAutoencoder.from_pretrained()
     assert not model.training and model.config.working_size == 160
     assert model.trained_on.startswith("1000 ICT-FaceKit and procedural heads")
-
-
-def test_a_checkpoint_of_the_model_alone_is_loaded(model: SkinAutoencoder, tmp_path: Path) -> None:
-    model = deepcopy(model)
-    model.trained_on = "nothing"
-    torch.save(model.make_checkpoint(), tmp_path / "model.ckpt")
-    again = SkinAutoencoder.from_pretrained(tmp_path / "model.ckpt")
-    assert again.config == model.config and again.trained_on == "nothing"
-    state = again.state_dict()
-    assert all(torch.equal(value, state[name]) for name, value in model.state_dict().items())
