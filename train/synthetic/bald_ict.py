@@ -58,7 +58,7 @@ def _chart_eye(ball: Float[np.ndarray, "points 3"]) -> Float[np.ndarray, "points
 def _find_centre(ball: Float[np.ndarray, "points 3"]) -> Float[np.ndarray, "3"]:
     """Middle of an eyeball without its cornea, which bulges ahead."""
     low, high = ball.min(0), ball.max(0)
-    middle: Float[np.ndarray, "3"] = (low + high) / 2
+    middle = np.asarray((low + high) / 2)
     middle[2] = low[2] + (high - low)[:2].mean() / 2
     return middle
 

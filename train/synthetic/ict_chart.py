@@ -48,7 +48,7 @@ def chart_skin(
     )
     target = np.concatenate([places, places * [-1, 1]])[once]
     spline = RBFInterpolator(source, target, kernel="thin_plate_spline", smoothing=1e-6)
-    chart: Float[np.ndarray, "vertices 2"] = spline(own)
+    chart = np.asarray(spline(own))
     chart[:, 1] -= 0.4 * (-1.02 - mean[:, 1]).clip(0)
     return chart
 

@@ -154,5 +154,4 @@ def compute_normals(mesh: LabelledMesh) -> Float[np.ndarray, "vertices 3"]:
 def find_vertex(skin: LabelledMesh, azimuth: float, elevation: float) -> Float[np.ndarray, "3"]:
     """Find the vertex whose place on the chart is nearest; angles are in radians."""
     off = skin.chart - [azimuth, elevation]
-    nearest: Float[np.ndarray, "3"] = skin.vertices[(off**2).sum(1).argmin()]
-    return nearest
+    return np.asarray(skin.vertices[(off**2).sum(1).argmin()])
