@@ -36,9 +36,9 @@ class FittedScenes(Dataset[FittedScene]):
     """Random scenes of fitted faces, sampled from (seed, split, index).
 
     Args:
-        faces: the faces, after their `setup`.
-        split: train, val or test.
-        samples: number of scenes.
+        faces: The faces, after their `setup`.
+        split: Train, val or test.
+        samples: Number of scenes.
     """
 
     def __init__(self, faces: "FittedFaces", split: str, samples: int):
@@ -72,16 +72,16 @@ class FittedFaces(LightningDataModule):
     shadows on themselves, and hollows see less of the sky.
 
     Args:
-        folder: of NAME_maps.npz with NAME_face.obj, as `skinnet maps` writes them.
-        model: hybrid.npz of `skinnet build-model` in the same texture space; half of the faces then
-            wear a skin sampled from it.
-        size: side of the square pictures in pixels.
-        texels: side of the skin textures that are rendered.
-        batch_size: pictures in a batch of each process.
-        shots: sides from which each face is seen.
-        train_samples: pictures that are called an epoch.
-        val_samples: pictures of the validation set.
-        seed: of all that is sampled.
+        folder: Folder of NAME_maps.npz with NAME_face.obj, as `skinnet maps` writes them.
+        model: File hybrid.npz of `skinnet build-model` in the same texture space; half of the faces
+            then wear a skin sampled from it.
+        size: Side of the square pictures in pixels.
+        texels: Side of the skin textures that are rendered.
+        batch_size: Pictures in a batch of each process.
+        shots: Sides from which each face is seen.
+        train_samples: Pictures that are called an epoch.
+        val_samples: Pictures of the validation set.
+        seed: Seed of all that is sampled.
     """
 
     def __init__(
@@ -116,7 +116,7 @@ class FittedFaces(LightningDataModule):
         """Read the faces and cast their views, whatever the stage.
 
         Raises:
-            InputError: if the folder holds no maps with their face, or one cannot be read.
+            InputError: If the folder holds no maps with their face, or one cannot be read.
         """
         if self.views:
             return
@@ -143,8 +143,8 @@ class FittedFaces(LightningDataModule):
         """Take a face's own skin texture, or one of the model for half of the faces.
 
         Args:
-            face: number of the face.
-            rng: random numbers.
+            face: Number of the face.
+            rng: Random numbers.
 
         Returns:
             Texture and known share, as `average_texels` gives them.

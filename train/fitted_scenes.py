@@ -72,8 +72,8 @@ def average_texels(
     """Average the known texels of a skin texture.
 
     Args:
-        texture: the texture, square.
-        texels: side of the result.
+        texture: The texture, square.
+        texels: Side of the result.
 
     Returns:
         Means [5, texels, texels] of hemoglobin, melanin and offset, and the share of known texels
@@ -90,16 +90,16 @@ def cast_views(path: Path, count: int, size: int, rng: np.random.Generator) -> l
     """Cast a textured face from some sides.
 
     Args:
-        path: file of the face's mesh.
-        count: number of views; the first is from ahead.
-        size: side of the pictures in pixels.
-        rng: random numbers.
+        path: File of the face's mesh.
+        count: Number of views; the first is from ahead.
+        size: Side of the pictures in pixels.
+        rng: Random numbers.
 
     Returns:
         The views.
 
     Raises:
-        InputError: if the mesh has no texture coordinates.
+        InputError: If the mesh has no texture coordinates.
     """
     scene = Scene(read_mesh(path))
     if scene.mesh.uv is None:
@@ -130,9 +130,9 @@ def render_fitted(scene: FittedScene, decoder: SkinDecoder, split: str = "train"
     """Render photographs and their truth, as `train.synthetic.renderer.render` does.
 
     Args:
-        scene: a batch of scenes.
-        decoder: the skin's colours.
-        split: train, val or test, each with its own cameras.
+        scene: A batch of scenes.
+        decoder: The skin's colours.
+        split: Train, val or test, each with its own cameras.
 
     Returns:
         Photographs, masks, true maps, captures and albedo.

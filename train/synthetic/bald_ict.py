@@ -20,7 +20,7 @@ def make_bald_ict(model: IctModel, rng: np.random.Generator) -> tuple[LabelledMe
 
     Args:
         model: ICT-FaceKit's.
-        rng: random numbers.
+        rng: Random numbers.
 
     Returns:
         The head, and where its neck ends.

@@ -23,7 +23,7 @@ def make_bald_procedural(rng: np.random.Generator) -> tuple[LabelledMesh, Neck]:
     """Make a bald head, its eyes open and its mouth closed or smiling.
 
     Args:
-        rng: random numbers.
+        rng: Random numbers.
 
     Returns:
         The head, and where its neck ends.

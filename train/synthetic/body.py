@@ -37,8 +37,8 @@ def make_bust(neck: Neck, rng: np.random.Generator) -> LabelledMesh:
     """Make a chest with skin, and clothes on it that are open at the collar.
 
     Args:
-        neck: where the neck ends.
-        rng: random numbers.
+        neck: Where the neck ends.
+        rng: Random numbers.
 
     Returns:
         Chest and clothes.

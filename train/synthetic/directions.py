@@ -12,18 +12,18 @@ def spread_directions(count: int) -> Float[np.ndarray, "{count} 3"]:
     """Spread unit vectors evenly over z > `LOWEST_Z`.
 
     Args:
-        count: number of vectors.
+        count: Number of vectors.
 
     Returns:
-        The vectors, the first towards the camera.
+        The vectors, those nearest to the camera's direction first.
 
     Source:
         Fibonacci spiral.
 
     Example:
         >>> spread_directions(3).round(2)
-        array([[ 0.63,  0.  ,  0.77],
-               [-0.7 ,  0.64,  0.33],
+        array([[ 0.63,  0.  ,  0.78],
+               [-0.7 ,  0.64,  0.32],
                [ 0.09, -0.99, -0.12]])
     """
     k = np.arange(count)

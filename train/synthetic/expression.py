@@ -24,9 +24,9 @@ def sample_expression(
     """Sample a mild expression: no mood, one or two, eyelids that follow the gaze, and a blink.
 
     Args:
-        names: names of ICT-FaceKit's shapes.
-        gaze: radians to the left and up.
-        rng: random numbers.
+        names: Names of ICT-FaceKit's shapes.
+        gaze: Radians to the left and up.
+        rng: Random numbers.
 
     Returns:
         A weight in [0, 1] for each shape.

@@ -58,7 +58,7 @@ def paint_face(face: FaceParameters) -> FaceCharts:
     """Paint skin and what covers it.
 
     Args:
-        face: parameters of a batch.
+        face: Parameters of a batch.
 
     Returns:
         Charts of `CHART_SIZE` rows and columns; the first row is the top.

@@ -48,8 +48,8 @@ def sample_face(rng: np.random.Generator, domain_randomised: bool = False) -> Fa
     """Sample all that is painted on a head, without a skin of a hybrid model.
 
     Args:
-        rng: random numbers.
-        domain_randomised: takes melanin from `RANDOMISED_MELANIN_RANGE`, for training alone.
+        rng: Random numbers.
+        domain_randomised: Takes melanin from `RANDOMISED_MELANIN_RANGE`, for training alone.
 
     Returns:
         Parameters in the precision that they were sampled in, most of them in float64.

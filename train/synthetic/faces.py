@@ -29,13 +29,13 @@ class SyntheticScenes(Dataset[SceneParameters]):
     Heads take turns, so that each is there equally often if the samples are a multiple of them.
 
     Args:
-        heads: buffers of all heads, stacked.
-        split: train, val or test.
-        samples: number of scenes.
-        seed: of the scenes.
-        skins: skins of a hybrid model; half of the faces then wear one. All else in the scenes is
+        heads: Buffers of all heads, stacked.
+        split: Train, val or test.
+        samples: Number of scenes.
+        seed: Seed of the scenes.
+        skins: Skins of a hybrid model; half of the faces then wear one. All else in the scenes is
             the same with skins and without.
-        domain_randomised: as in `sample_scene`; for training alone.
+        domain_randomised: As in `sample_scene`; for training alone.
     """
 
     def __init__(
@@ -74,20 +74,20 @@ class SyntheticFaces(LightningDataModule):
     test have heads of their own, test has cameras of its own, and both are the same in every run.
 
     Args:
-        size: side of the square pictures in pixels.
-        batch_size: pictures in a batch of each process.
-        heads: heads of the training set.
-        val_heads: heads of the validation set.
-        test_heads: heads of the test set.
-        train_samples: pictures that are called an epoch.
-        val_samples: pictures of the validation set.
-        test_samples: pictures of the test set.
+        size: Side of the square pictures in pixels.
+        batch_size: Pictures in a batch of each process.
+        heads: Heads of the training set.
+        val_heads: Heads of the validation set.
+        test_heads: Heads of the test set.
+        train_samples: Pictures that are called an epoch.
+        val_samples: Pictures of the validation set.
+        test_samples: Pictures of the test set.
         ict: ICT-FaceKit's model as an .npz; without it all heads are procedural.
-        geometry: folder in which the heads are kept.
+        geometry: Folder in which the heads are kept.
         skins: .npz of `python -m train.synthetic.skins` or `examples/london.py`, skins sampled from
             a hybrid model; half of the faces then wear one. Without it all skins are painted.
-        seed: of everything that is sampled.
-        workers: processes that cast heads and sample scenes; 0 does both in the training process.
+        seed: Seed of everything that is sampled.
+        workers: Processes that cast heads and sample scenes; 0 does both in the training process.
     """
 
     def __init__(

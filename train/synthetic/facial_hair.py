@@ -13,12 +13,12 @@ def evaluate_bell(
     """Evaluate a bell on both sides of the face, or on its middle.
 
     Args:
-        azimuth: in radians.
-        elevation: in radians.
-        centre: azimuth of the bell's middle; 0 makes one bell, otherwise there are two.
-        height: elevation of the bell's middle.
-        width: standard deviation in azimuth.
-        tall: standard deviation in elevation.
+        azimuth: In radians.
+        elevation: In radians.
+        centre: Azimuth of the bell's middle; 0 makes one bell, otherwise there are two.
+        height: Elevation of the bell's middle.
+        width: Standard deviation in azimuth.
+        tall: Standard deviation in elevation.
 
     Returns:
         Values in [0, 1].
@@ -36,9 +36,9 @@ def cover_with_beard(beard: BeardParameters, side: Tensor, elevation: Tensor) ->
     """Find the opacity of beard, moustache and stubble.
 
     Args:
-        beard: what grows on each face.
-        side: distance from the face's middle line in radians.
-        elevation: in radians.
+        beard: What grows on each face.
+        side: Distance from the face's middle line in radians.
+        elevation: In radians.
 
     Returns:
         Opacity in [0, 1], [batch, 1, rows, columns].

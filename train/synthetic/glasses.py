@@ -23,9 +23,9 @@ def make_glasses(
     """Make two rims, the bridge and the temples.
 
     Args:
-        skin: the head's skin.
-        eyes: the foremost points of both eyes.
-        rng: random numbers.
+        skin: The head's skin.
+        eyes: The foremost points of both eyes.
+        rng: Random numbers.
 
     Returns:
         The frame.

@@ -62,19 +62,19 @@ def load_or_cast_heads(
     Each cast has a file of its own, so that work that was interrupted goes on where it was.
 
     Args:
-        folder: where the casts are kept.
-        size: side of the pictures in pixels.
-        count: number of heads.
-        split: train, val or test, which never share a head.
-        seed: of the heads.
-        ict: file of ICT-FaceKit, of which most heads are then made; all others are procedural.
-        workers: processes that cast heads.
+        folder: Where the casts are kept.
+        size: Side of the pictures in pixels.
+        count: Number of heads.
+        split: Train, val or test, which never share a head.
+        seed: Seed of the heads.
+        ict: File of ICT-FaceKit, of which most heads are then made; all others are procedural.
+        workers: Processes that cast heads.
 
     Returns:
         The casts, stacked.
 
     Raises:
-        InputError: if the folder cannot be made, or `ict` cannot be read.
+        InputError: If the folder cannot be made, or `ict` cannot be read.
     """
     settings = CastSettings(size, seed, "procedural" if ict is None else _identify(ict), VERSION)
     place = make_folder(folder / settings.folder, "give another folder for the geometry")

@@ -54,9 +54,9 @@ def cast_head(head: LabelledMesh, rng: np.random.Generator, size: int) -> HeadCa
     """Cast a head from a random side, distance and framing.
 
     Args:
-        head: a whole head.
-        rng: random numbers.
-        size: side of the picture in pixels.
+        head: A whole head.
+        rng: Random numbers.
+        size: Side of the picture in pixels.
 
     Returns:
         Its buffers.
@@ -83,7 +83,7 @@ def rotate(angles: Float[np.ndarray, "3"]) -> Float[np.ndarray, "3 3"]:
     """Make the matrix from the head's axes to the camera's: pitch, then yaw, then roll.
 
     Args:
-        angles: pitch, yaw and roll in radians.
+        angles: Pitch, yaw and roll in radians.
 
     Returns:
         The matrix, whose rows are the camera's axes.
@@ -105,9 +105,9 @@ def cast_view(
     """Cast what a camera sees of a head.
 
     Args:
-        head: a whole head.
-        scene: the mesh of the same head.
-        view: the camera, with a square picture.
+        head: A whole head.
+        scene: The mesh of the same head.
+        view: The camera, with a square picture.
 
     Returns:
         Its buffers.
@@ -127,8 +127,8 @@ def cast_surface(surface: GeometryBuffers, axes: Float[np.ndarray, "3 3"]) -> Su
     """Find the normals of a visible surface, and what light reaches it.
 
     Args:
-        surface: the surface under each pixel.
-        axes: the camera's axes in rows.
+        surface: The surface under each pixel.
+        axes: The camera's axes in rows.
 
     Returns:
         Values of the pixels that show the surface.

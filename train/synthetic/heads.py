@@ -30,9 +30,9 @@ def complete_head(bald: LabelledMesh, neck: Neck, rng: np.random.Generator) -> L
     """Put hair and shoulders on a bald head, and glasses on one in seven.
 
     Args:
-        bald: skin, eyes and mouth.
-        neck: where its neck ends.
-        rng: random numbers.
+        bald: Skin, eyes and mouth.
+        neck: Where its neck ends.
+        rng: Random numbers.
 
     Returns:
         The whole head.

@@ -29,8 +29,8 @@ def chart_skin(
     A thin-plate spline takes the mean head's own angles to those at which its features are painted.
 
     Args:
-        mean: vertices of the mean head in half heads.
-        landmarks: vertices of iBUG's 68 landmarks.
+        mean: Vertices of the mean head in half heads.
+        landmarks: Vertices of iBUG's 68 landmarks.
 
     Returns:
         Azimuth and elevation of each vertex in radians.

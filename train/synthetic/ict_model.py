@@ -47,13 +47,13 @@ def read_ict_model(path: Path) -> IctModel:
     """Read the model.
 
     Args:
-        path: an .npz with the arrays in `ARRAYS`, in centimetres.
+        path: An .npz with the arrays in `ARRAYS`, in centimetres.
 
     Returns:
         The model in half heads, with the chart of its skin.
 
     Raises:
-        InputError: if the file or one of its arrays is not as it should be.
+        InputError: If the file or one of its arrays is not as it should be.
     """
     arrays = _read_arrays(path)
     mean = (arrays["verts"].astype(np.float64) - _ORIGIN) / _SCALE

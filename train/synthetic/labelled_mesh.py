@@ -62,8 +62,8 @@ def triangulate_grid(rows: int, columns: int) -> Int[np.ndarray, "triangles 3"]:
     """Make the triangles of a grid of vertices, row by row.
 
     Args:
-        rows: rows of vertices; they go down.
-        columns: columns of vertices; they go to the right.
+        rows: Rows of vertices; they go down.
+        columns: Columns of vertices; they go to the right.
 
     Returns:
         Triangles, counter-clockwise from the front.
@@ -85,9 +85,9 @@ def clip(
     """Cut a mesh along the zero of a value, and keep the part where it is positive.
 
     Args:
-        mesh: what is cut.
-        value: one number for each vertex, interpolated in between.
-        label: the label of the part; None keeps the labels.
+        mesh: What is cut.
+        value: One number for each vertex, interpolated in between.
+        label: The label of the part; None keeps the labels.
 
     Returns:
         The part, with new vertices along the cut.
@@ -107,9 +107,9 @@ def clip_triangles(
     """Cut triangles along the zero of a value, and keep what is positive.
 
     Args:
-        columns: numbers of each vertex, which are interpolated along the cut.
-        triangles: indices of vertices.
-        value: one number for each vertex.
+        columns: Numbers of each vertex, which are interpolated along the cut.
+        triangles: Indices of vertices.
+        value: One number for each vertex.
 
     Returns:
         The columns with those of new vertices behind them, the triangles that are left, and the

@@ -30,10 +30,10 @@ def colour_materials(
     """Colour every pixel by its label.
 
     Args:
-        scene: a batch.
-        label: labels of `train.synthetic.labels`.
-        place: places on the labels' charts.
-        cover_colour: linear sRGB of what covers the skin.
+        scene: A batch.
+        label: Labels of `train.synthetic.labels`.
+        place: Places on the labels' charts.
+        cover_colour: Linear sRGB of what covers the skin.
 
     Returns:
         Linear sRGB under white light; on skin it is `cover_colour`.

@@ -32,9 +32,9 @@ def wear_model_skin(
     """Let a face wear one of the skins, mirrored or not, or leave it as it is.
 
     Args:
-        face: one face, without a batch axis.
-        rng: random numbers.
-        skins: one or more skins.
+        face: One face, without a batch axis.
+        rng: Random numbers.
+        skins: One or more skins.
 
     Returns:
         The face; a share of `WORN_SHARE` wears a skin.
@@ -55,11 +55,11 @@ def save_model_skins(path: Path, skins: ModelSkins) -> None:
     """Write skins as .npz, whole or not at all.
 
     Args:
-        path: ends in .npz.
-        skins: one or more skins.
+        path: Ends in .npz.
+        skins: One or more skins.
 
     Raises:
-        InputError: if the path ends otherwise or cannot be written.
+        InputError: If the path ends otherwise or cannot be written.
     """
     if path.suffix != ".npz":
         raise InputError(f"{path} does not end in .npz, as files of skins do.")
@@ -76,13 +76,13 @@ def load_model_skins(path: Path) -> ModelSkins:
     """Read skins.
 
     Args:
-        path: as `save_model_skins` writes it.
+        path: As `save_model_skins` writes it.
 
     Returns:
         The skins.
 
     Raises:
-        InputError: for a file that is missing, damaged or something else.
+        InputError: For a file that is missing, damaged or something else.
     """
     try:
         with path.open("rb") as stream, np.load(stream, allow_pickle=False) as file:

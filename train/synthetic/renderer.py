@@ -44,9 +44,9 @@ def render(scene: SceneParameters, decoder: SkinDecoder, split: str = "train") -
     shading is 0, and the true offset is the light itself, before lens and tone curve.
 
     Args:
-        scene: a batch of scenes.
-        decoder: the skin's colours.
-        split: train, val or test, each with its own cameras.
+        scene: A batch of scenes.
+        decoder: The skin's colours.
+        split: Train, val or test, each with its own cameras.
 
     Returns:
         Photographs, masks, true maps, captures and albedo.
@@ -83,11 +83,11 @@ def develop(
     """Photograph skin and what is beside it, and put the truth together.
 
     Args:
-        camera: exposure and all that follows the sensor.
-        skin: skin and its light.
-        rest: linear light of all that is not skin.
-        white: linear sRGB of a white diffuser, [batch, 3, 1, 1].
-        capture: light and camera, handed on.
+        camera: Exposure and all that follows the sensor.
+        skin: Skin and its light.
+        rest: Linear light of all that is not skin.
+        white: Linear sRGB of a white diffuser, [batch, 3, 1, 1].
+        capture: Light and camera, handed on.
 
     Returns:
         Photographs, masks, true maps, captures and albedo.

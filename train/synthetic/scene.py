@@ -204,8 +204,8 @@ def map_tensors(function: Callable[[Tensor], Tensor], record: Record) -> Record:
     """Apply a function to every tensor of a record and of the records in it.
 
     Args:
-        function: of one tensor.
-        record: any record of this module.
+        function: Function of one tensor.
+        record: Any record of this module.
 
     Returns:
         A record of the same type.

@@ -30,9 +30,9 @@ def sample_scene(
     """Sample all that is needed for one picture of a head.
 
     Args:
-        rng: random numbers; the same state gives the same scene.
-        head: buffers of a square picture, without a batch axis.
-        domain_randomised: widens the range of skin for training: melanin up to a fraction of .33
+        rng: Random numbers; the same state gives the same scene.
+        head: Buffers of a square picture, without a batch axis.
+        domain_randomised: Widens the range of skin for training: melanin up to a fraction of .33
             instead of .25, and oil times the exponential of an exponential variate of mean .35.
 
     Returns:

@@ -37,12 +37,12 @@ def shade(
     """Shade surfaces by a sky and by lamps that cast shadows.
 
     Args:
-        light: sky and lamps.
-        gloss: oil and roughness of each picture's skin.
-        normal: unit normals in the camera's axes.
-        sky_visibility: share of the sky that nothing hides, in [0, 1].
-        visibility_mask: a bit for each of `LIGHT_DIRECTIONS`, as in `HeadBuffers`.
-        oil: oil of each pixel relative to its picture's.
+        light: Sky and lamps.
+        gloss: Oil and roughness of each picture's skin.
+        normal: Unit normals in the camera's axes.
+        sky_visibility: Share of the sky that nothing hides, in [0, 1].
+        visibility_mask: A bit for each of `LIGHT_DIRECTIONS`, as in `HeadBuffers`.
+        oil: Oil of each pixel relative to its picture's.
 
     Returns:
         Both kinds of light, relative to a white diffuser facing the light.
@@ -74,9 +74,9 @@ def find_lamp_visibility(
     """Find the share of a lamp that each pixel sees.
 
     Args:
-        visibility_mask: a bit for each of `LIGHT_DIRECTIONS`.
-        lamp: unit vector towards the lamp.
-        softness: half width of the lamp in radians.
+        visibility_mask: A bit for each of `LIGHT_DIRECTIONS`.
+        lamp: Unit vector towards the lamp.
+        softness: Half width of the lamp in radians.
 
     Returns:
         Shares in [0, 1].

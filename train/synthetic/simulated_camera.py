@@ -27,7 +27,7 @@ def select_sensors(split: str) -> tuple[int, ...]:
     """Select the measured cameras of a split; train and val share theirs, test has its own.
 
     Args:
-        split: train, val or test.
+        split: Train, val or test.
 
     Returns:
         Rows of the table of cameras.
@@ -43,10 +43,10 @@ def simulate_sensor(
     """Put measured sensors under lights.
 
     Args:
-        light: spectrum of each picture's light.
-        camera: sensor and white balance of each picture.
-        model: statistical model of cameras, in whose terms the capture is described.
-        split: train, val or test.
+        light: Spectrum of each picture's light.
+        camera: Sensor and white balance of each picture.
+        model: Statistical model of cameras, in whose terms the capture is described.
+        split: Train, val or test.
 
     Returns:
         The matrices from reflectance spectra to linear sRGB, and the captures. A capture describes
@@ -74,8 +74,8 @@ def take_photograph(camera: CameraParameters, linear: Image) -> Image:
     """Turn linear light into a photograph: lens blur, tone curve, noise, JPEG, eight bits.
 
     Args:
-        camera: what each picture's camera does.
-        linear: linear sRGB, 0 or more.
+        camera: What each picture's camera does.
+        linear: Linear sRGB, 0 or more.
 
     Returns:
         Display sRGB in [0, 1].
@@ -92,8 +92,8 @@ def apply_tone_curve(tone: Float[Tensor, "batch 2"], linear: Image) -> Image:
     """Turn linear light into display sRGB by a camera's tone curve.
 
     Args:
-        tone: log contrast, and bend of the curve.
-        linear: linear sRGB, 0 or more.
+        tone: Log contrast, and bend of the curve.
+        linear: Linear sRGB, 0 or more.
 
     Returns:
         Display sRGB in [0, 1].

@@ -46,10 +46,10 @@ def compute_log_factors(
     """Compute logarithms over the face's median, and fill what is not skin.
 
     Args:
-        fractions: volume fractions.
-        floor: fractions that are added before logarithms are taken.
-        weight: share of bare skin in [0, 1].
-        lips: share of lips in [0, 1].
+        fractions: Volume fractions.
+        floor: Fractions that are added before logarithms are taken.
+        weight: Share of bare skin in [0, 1].
+        lips: Share of lips in [0, 1].
 
     Returns:
         Log factors.
@@ -66,9 +66,9 @@ def fade_to_border(
     """Damp broad changes, limit the rest, and fade to 0 towards the border.
 
     Args:
-        log: log factors.
-        lips: share of lips in [0, 1].
-        inside: texels that the model knows.
+        log: Log factors.
+        lips: Share of lips in [0, 1].
+        inside: Texels that the model knows.
 
     Returns:
         Log factors of mean 0.
@@ -85,9 +85,9 @@ def fill_gaps(values: Charts, weight: Chart, source: Chart) -> Charts:
     """Keep values by their weight, and fill the rest from the nearest sources.
 
     Args:
-        values: any values.
-        weight: share in [0, 1] of the own value.
-        source: weight in [0, 1] with which a texel fills others.
+        values: Any values.
+        weight: Share in [0, 1] of the own value.
+        source: Weight in [0, 1] with which a texel fills others.
 
     Returns:
         Values without gaps.

@@ -53,17 +53,17 @@ def sample_model_skins(
     that the mean over a face is 0.
 
     Args:
-        model: the hybrid model.
-        places: where each texel of the chart lies in the model's texture space.
-        count: number of skins, 1 or more.
-        seed: of the samples, 0 or more.
-        spread: standard deviations that are sampled, in [0, 10].
+        model: The hybrid model.
+        places: Where each texel of the chart lies in the model's texture space.
+        count: Number of skins, 1 or more.
+        seed: Seed of the samples, 0 or more.
+        spread: Standard deviations that are sampled, in [0, 10].
 
     Returns:
         The skins.
 
     Raises:
-        InputError: for numbers out of range, or a model that does not cover the face.
+        InputError: For numbers out of range, or a model that does not cover the face.
     """
     if count < 1 or seed < 0 or not 0 <= spread <= 10:
         raise InputError(
@@ -111,7 +111,7 @@ def find_procedural_places(own_uv: bool = False) -> ChartPlaces:
     """Find the chart's texels in the texture space of the procedural face.
 
     Args:
-        own_uv: takes the chart itself for texture space, not the embedding of `skinnet maps`.
+        own_uv: Takes the chart itself for texture space, not the embedding of `skinnet maps`.
 
     Returns:
         Their texture coordinates.
@@ -129,7 +129,7 @@ def main(argv: Sequence[str] | None = None) -> int:
     """Sample skins from a model of the procedural face.
 
     Args:
-        argv: words of the command; None takes those of the process.
+        argv: Words of the command; None takes those of the process.
 
     Returns:
         The exit code, 2 for bad input.
