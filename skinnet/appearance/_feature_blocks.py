@@ -35,7 +35,7 @@ class ArrayBlocks:
         rows: Float[np.ndarray, "subjects features"],
         channels: int = 1,
         width: int | None = None,
-    ):
+    ) -> None:
         subjects, features = rows.shape
         if features % channels:
             raise InputError(f"{features} features cannot be split into {channels} equal blocks.")

@@ -43,7 +43,7 @@ class AppearanceModel(nn.Module, ABC):
         statistics: PrincipalComponents,
         mask: Bool[np.ndarray, "size size"],
         colour: SkinColour,
-    ):
+    ) -> None:
         super().__init__()
         self.statistics, self.mask, self.colour = statistics, mask, colour
         buffers = {

@@ -56,7 +56,7 @@ class SkinColour(nn.Module):
         nodes: tuple[int, int] = _NODES,
         light: str = "D65",
         camera: str = "mean",
-    ):
+    ) -> None:
         super().__init__()
         self.matrix = (
             _compute_standard_matrix() if matrix is None else np.asarray(matrix, np.float64)

@@ -45,7 +45,7 @@ class JointModel(nn.Module):
         statistics: PrincipalComponents,
         deviations: Float[np.ndarray, "modes"],
         weight: float,
-    ):
+    ) -> None:
         super().__init__()
         self.statistics, self.deviations, self.weight = statistics, deviations, weight
         units = np.ones(statistics.mean.shape[1])

@@ -18,7 +18,7 @@ from skinnet.appearance.stack import SubjectStack
 class _ColourBlocks:
     """`FeatureBlocks` of linear RGB, decoded from those of pigments and offset."""
 
-    def __init__(self, features: FeatureBlocks, colour: SkinColour):
+    def __init__(self, features: FeatureBlocks, colour: SkinColour) -> None:
         self.features, self.colour = features, colour
         self.shape = (features.shape[0], 3, features.shape[2])
 

@@ -144,7 +144,7 @@ class _StackBlocks:
 
     def __init__(
         self, stack: SubjectStack, mask: Bool[np.ndarray, "size size"], width: int | None = None
-    ):
+    ) -> None:
         self.stack, self.inside = stack, mask.ravel()
         self.shape = (len(stack.names), len(CHANNELS), int(mask.sum()))
         self.width = width or compute_block_width(*self.shape[:2])
