@@ -16,8 +16,16 @@ def main(
     description: str,
     layout: Callable[[Results], str] | None = None,
 ) -> None:
-    """Measures, then prints a table (`layout`'s, or a line a number), or with `--json` one
-    object; exits with 2 and a sentence for bad input."""
+    """Measure, then print the figures.
+
+    Bad input ends with a sentence and exit code 2.
+
+    Args:
+        measure: Makes the figures.
+        description: Help text of the command.
+        layout: Makes a table of the figures; without it each has a line of its own. `--json` prints
+            one object instead.
+    """
     parser = argparse.ArgumentParser(description=description)
     parser.add_argument("--json", action="store_true", help="print one JSON object")
     as_json = parser.parse_args().json

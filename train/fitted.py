@@ -41,7 +41,7 @@ class FittedScenes(Dataset[FittedScene]):
         samples: Number of scenes.
     """
 
-    def __init__(self, faces: "FittedFaces", split: str, samples: int):
+    def __init__(self, faces: "FittedFaces", split: str, samples: int) -> None:
         self.faces, self.samples = faces, samples
         self.key = (faces.seed, SPLITS[split])
 
@@ -95,7 +95,7 @@ class FittedFaces(LightningDataModule):
         train_samples: PositiveInt = 6400,
         val_samples: PositiveInt = 128,
         seed: NonNegativeInt = 0,
-    ):
+    ) -> None:
         super().__init__()
         self.folder, self.model_file = Path(folder), None if model is None else Path(model)
         self.size, self.texels, self.batch_size, self.shots = size, texels, batch_size, shots

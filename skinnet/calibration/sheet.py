@@ -74,7 +74,7 @@ class Sheet:
     A place is a row and a column in steps between nodes. Past the border the last cells go on.
     """
 
-    def __init__(self, grid: Float[np.ndarray, "rows columns 3"]):
+    def __init__(self, grid: Float[np.ndarray, "rows columns 3"]) -> None:
         self.nodes = grid.reshape(-1, 3)
         self.columns = grid.shape[1]
         for axis in (0, 1):

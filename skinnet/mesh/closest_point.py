@@ -55,7 +55,7 @@ class TriangleTree:
         self,
         vertices: Float[np.ndarray, "vertices 3"],
         triangles: Int[np.ndarray, "triangles 3"],
-    ):
+    ) -> None:
         corners = vertices[triangles].astype(np.float64)
         self.nearest_vertex = cKDTree(vertices[np.unique(triangles)])
         self.order, self.depth = _order_triangles(corners.mean(1))

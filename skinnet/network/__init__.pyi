@@ -10,19 +10,19 @@ from .autoencoder import SkinMaps as SkinMaps
 from .checkpoint import read_checkpoint as read_checkpoint
 from .encoder import SkinEncoder as SkinEncoder
 from .losses import appearance_l1 as appearance_l1
-from .losses import augmentation_consistency as augmentation_consistency
-from .losses import camera_prior as camera_prior
 from .losses import error_shading_covariance as error_shading_covariance
 from .losses import lighting_error as lighting_error
 from .losses import mask_cross_entropy as mask_cross_entropy
-from .losses import off_skin_shading as off_skin_shading
 from .losses import pigment_l1 as pigment_l1
 from .losses import pigment_mse as pigment_mse
-from .losses import shading_from_luminance as shading_from_luminance
-from .losses import shading_smoothness as shading_smoothness
 from .losses import soft_iou as soft_iou
-from .losses import specular_sparsity as specular_sparsity
 from .losses import white_balance_l1 as white_balance_l1
+from .priors import augmentation_consistency as augmentation_consistency
+from .priors import camera_prior as camera_prior
+from .priors import off_skin_shading as off_skin_shading
+from .priors import shading_from_luminance as shading_from_luminance
+from .priors import shading_smoothness as shading_smoothness
+from .priors import specular_sparsity as specular_sparsity
 
 __all__ = [
     "CAMERA_MAX",

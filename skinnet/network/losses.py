@@ -7,20 +7,10 @@ Images are linear sRGB [batch, 3, height, width], maps are [batch, height, width
 the probability that a pixel is skin.
 """
 
-from jaxtyping import Float
-from kornia.filters import gaussian_blur2d, spatial_gradient
-from torch import Tensor
-
+from skinnet.network._means import Image, Map, Scalar, cube_root, weighted_mean
 from skinnet.network.autoencoder import F_BLOOD_MAX, F_MEL_MAX, SkinMaps
+from skinnet.network.priors import WHITE_BALANCE_SD
 from skinnet.physics.capture import Capture
-from skinnet.physics.srgb import luminance
-
-Image = Float[Tensor, "batch 3 height width"]
-Map = Float[Tensor, "batch height width"]
-Scalar = Float[Tensor, ""]
-
-WHITE_BALANCE_SD = 0.05
-"""Standard deviation of a camera's white-balance errors in log R/G and log B/G."""
 
 PIGMENT_SD = 0.066, 0.024
 """Standard deviations of melanin and hemoglobin over the skin of the synthetic faces."""
@@ -28,7 +18,6 @@ PIGMENT_SD = 0.066, 0.024
 MEAN_SHADING = 0.85
 """Mean shading of the skin of the synthetic faces."""
 
-_DARKEST = 1e-3
 _FAINT = 1e-4
 
 
@@ -57,127 +46,7 @@ def appearance_l1(reconstruction: Image, photograph: Image, weight: Map) -> Scal
     """
     saturated = (photograph >= 1) & (reconstruction > photograph)
     difference = (reconstruction - photograph).abs().masked_fill(saturated, 0)
-    return _mean(difference.mean(1), weight)
-
-
-def camera_prior(capture: Capture) -> Scalar:
-    """Compute the negative log likelihood of camera and white balance under normal priors.
-
-    Args:
-        capture: Camera coefficients in standard deviations, and white balance in logarithms.
-
-    Returns:
-        mean(b^2) / 2 + mean((w / 0.05)^2) / 2, for coefficients b and white-balance errors w.
-
-    Example:
-        >>> from skinnet.network import camera_prior
-        >>> from skinnet.physics import SpectralCamera
-        >>> camera_prior(SpectralCamera().standard((1,))).item()
-        0.0
-    """
-    balance = (capture.white_balance / WHITE_BALANCE_SD) ** 2
-    return (capture.camera**2).mean() / 2 + balance.mean() / 2
-
-
-def specular_sparsity(maps: SkinMaps, mask: Map) -> Scalar:
-    """Compute the mean specular reflection on skin.
-
-    This is an L1 prior: highlights are rare, not absent.
-
-    Args:
-        maps: What the encoder read.
-        mask: Probability of skin.
-
-    Returns:
-        Weighted mean of the specular map.
-
-    Example:
-        >>> import torch
-        >>> from skinnet.network import SkinMaps, specular_sparsity
-        >>> values = torch.full((4, 1, 8, 8), 0.05)
-        >>> mask = torch.ones(1, 8, 8)
-        >>> maps = SkinMaps(*values, torch.zeros(1, 3, 8, 8), mask)
-        >>> round(specular_sparsity(maps, mask).item(), 4)
-        0.05
-    """
-    return _mean(maps.specular, mask)
-
-
-def shading_smoothness(maps: SkinMaps, mask: Map) -> Scalar:
-    """Compute the mean absolute gradient of log shading on skin.
-
-    Args:
-        maps: What the encoder read.
-        mask: Probability of skin.
-
-    Returns:
-        Weighted mean of |d log s / dx| + |d log s / dy|, per pixel.
-
-    Example:
-        >>> import torch
-        >>> from skinnet.network import SkinMaps, shading_smoothness
-        >>> values = torch.full((4, 1, 8, 8), 0.05)
-        >>> mask = torch.ones(1, 8, 8)
-        >>> maps = SkinMaps(*values, torch.zeros(1, 3, 8, 8), mask)
-        >>> shading_smoothness(maps, mask).item()
-        0.0
-    """
-    log = maps.shading.clamp_min(_DARKEST).log()
-    gradient = spatial_gradient(log[:, None], mode="diff")
-    return _mean(gradient.abs().sum(2)[:, 0], mask)
-
-
-def shading_from_luminance(maps: SkinMaps, photograph: Image, mask: Map) -> Scalar:
-    """Compare log shading with the log of the photograph's smoothed luminance.
-
-    On skin of one colour, the low frequencies of shading are those of luminance. Each photograph's
-    mean difference is removed, because exposure and albedo trade against the level of shading.
-
-    Args:
-        maps: What the encoder read.
-        photograph: Linear sRGB.
-        mask: Probability of skin.
-
-    Returns:
-        Weighted mean of the absolute difference.
-
-    Example:
-        >>> import torch
-        >>> from skinnet.network import SkinMaps, shading_from_luminance
-        >>> values = torch.full((4, 1, 8, 8), 0.05)
-        >>> mask = torch.ones(1, 8, 8)
-        >>> maps = SkinMaps(*values, torch.zeros(1, 3, 8, 8), mask)
-        >>> photograph = torch.full((1, 3, 8, 8), 0.3)
-        >>> round(shading_from_luminance(maps, photograph, mask).item(), 4)
-        0.0
-    """
-    size = 2 * (min(mask.shape[-2:]) // 16) + 1
-    light = gaussian_blur2d(luminance(photograph), size, (size / 4, size / 4))[:, 0]
-    difference = maps.shading.clamp_min(_DARKEST).log() - light.clamp_min(_DARKEST).log()
-    level = (difference * mask).sum((-2, -1)) / mask.sum((-2, -1)).clamp_min(1)
-    return _mean((difference - level[:, None, None]).abs(), mask)
-
-
-def off_skin_shading(maps: SkinMaps, mask: Map) -> Scalar:
-    """Penalise shading where there is no skin, so that skin explains skin alone.
-
-    Args:
-        maps: What the encoder read.
-        mask: Probability of skin.
-
-    Returns:
-        Mean over all pixels of shading times one minus the mask.
-
-    Example:
-        >>> import torch
-        >>> from skinnet.network import SkinMaps, off_skin_shading
-        >>> values = torch.full((4, 1, 8, 8), 0.05)
-        >>> mask = torch.ones(1, 8, 8)
-        >>> maps = SkinMaps(*values, torch.zeros(1, 3, 8, 8), mask)
-        >>> round(off_skin_shading(maps, 0 * mask).item(), 4)
-        0.05
-    """
-    return (maps.shading * (1 - mask)).mean()
+    return weighted_mean(difference.mean(1), weight)
 
 
 def mask_cross_entropy(maps: SkinMaps, mask: Map) -> Scalar:
@@ -259,9 +128,9 @@ def pigment_l1(maps: SkinMaps, truth: SkinMaps) -> Scalar:
         >>> round(pigment_l1(maps, truth).item(), 4), round((0.05 / F_MEL_MAX) ** (1 / 3), 4)
         (0.4881, 0.4881)
     """
-    melanin = _root(maps.melanin, F_MEL_MAX) - _root(truth.melanin, F_MEL_MAX)
-    blood = _root(maps.hemoglobin, F_BLOOD_MAX) - _root(truth.hemoglobin, F_BLOOD_MAX)
-    return _mean(melanin.abs() + blood.abs(), truth.mask)
+    melanin = cube_root(maps.melanin, F_MEL_MAX) - cube_root(truth.melanin, F_MEL_MAX)
+    blood = cube_root(maps.hemoglobin, F_BLOOD_MAX) - cube_root(truth.hemoglobin, F_BLOOD_MAX)
+    return weighted_mean(melanin.abs() + blood.abs(), truth.mask)
 
 
 def pigment_mse(maps: SkinMaps, truth: SkinMaps) -> Scalar:
@@ -292,7 +161,7 @@ def pigment_mse(maps: SkinMaps, truth: SkinMaps) -> Scalar:
         ((guess - true) / deviation) ** 2
         for guess, true, deviation in zip(maps[:2], truth[:2], PIGMENT_SD, strict=True)
     )
-    return _mean(melanin + blood, truth.mask)
+    return weighted_mean(melanin + blood, truth.mask)
 
 
 def error_shading_covariance(maps: SkinMaps, truth: SkinMaps) -> Scalar:
@@ -322,36 +191,8 @@ def error_shading_covariance(maps: SkinMaps, truth: SkinMaps) -> Scalar:
         >>> round(error_shading_covariance(maps, bright).item(), 4)  # .4881 times 1.15
         0.5613
     """
-    error = _root(maps.melanin, F_MEL_MAX) - _root(truth.melanin, F_MEL_MAX)
-    return -_mean(error * (truth.shading.clamp_max(2) - MEAN_SHADING), truth.mask)
-
-
-def augmentation_consistency(maps: SkinMaps, mask: Map) -> Scalar:
-    """Compare the pigments of photographs with those of their augmented copies, in cube roots.
-
-    Args:
-        maps: Maps of a batch whose second half shows the photographs of the first half in another
-            exposure and white balance.
-        mask: Probability of skin, for the whole batch.
-
-    Returns:
-        Weighted mean of |d m^(1/3)| + |d b^(1/3)| between the halves, for melanin m and blood b
-        relative to their largest fractions.
-
-    Example:
-        >>> import torch
-        >>> from skinnet.network import SkinMaps, augmentation_consistency
-        >>> values = torch.full((4, 1, 8, 8), 0.05)
-        >>> mask = torch.ones(1, 8, 8)
-        >>> maps = SkinMaps(*values, torch.zeros(1, 3, 8, 8), mask)
-        >>> batch = SkinMaps(*(torch.cat([value, value]) for value in maps))
-        >>> augmentation_consistency(batch, torch.cat([mask, mask])).item()
-        0.0
-    """
-    melanin, melanin_again = _root(maps.melanin, F_MEL_MAX).chunk(2)
-    blood, blood_again = _root(maps.hemoglobin, F_BLOOD_MAX).chunk(2)
-    difference = (melanin - melanin_again).abs() + (blood - blood_again).abs()
-    return _mean(difference, mask.chunk(2)[0])
+    error = cube_root(maps.melanin, F_MEL_MAX) - cube_root(truth.melanin, F_MEL_MAX)
+    return -weighted_mean(error * (truth.shading.clamp_max(2) - MEAN_SHADING), truth.mask)
 
 
 def lighting_error(maps: SkinMaps, truth: SkinMaps) -> Scalar:
@@ -401,13 +242,3 @@ def white_balance_l1(capture: Capture, truth: Capture) -> Scalar:
         1.0
     """
     return (capture.white_balance - truth.white_balance).abs().mean() / WHITE_BALANCE_SD
-
-
-def _root(fraction: Map, largest: float) -> Map:
-    # The derivative of the cube root is infinite at zero.
-    return (fraction / largest).clamp_min(1e-6) ** (1 / 3)
-
-
-def _mean(value: Map, weight: Map) -> Scalar:
-    over = (-2, -1)
-    return ((value * weight).sum(over) / weight.sum(over).clamp_min(1)).mean()

@@ -33,7 +33,7 @@ class ColourSurface:
     position [2, points] is a row and a column, counted in nodes from the first.
     """
 
-    def __init__(self, half_steps: Float[np.ndarray, "rows columns 3"]):
+    def __init__(self, half_steps: Float[np.ndarray, "rows columns 3"]) -> None:
         """`half_steps` are the colours at every half step: odd numbers of rows and columns."""
         self.last = np.array(half_steps.shape[:2])[:, None] // 2
         rows, columns = half_steps.shape[:2]

@@ -67,7 +67,7 @@ class SpectralCamera(nn.Module):
         basis: Float[Tensor, "components wavelength 3"] | None = None,
         lights: Float[Tensor, "lamps wavelength"] | None = None,
         dtype: torch.dtype | None = None,
-    ):
+    ) -> None:
         super().__init__()
         dtype = dtype or torch.get_default_dtype()
         measured_mean, measured_basis, explained = _camera_basis()

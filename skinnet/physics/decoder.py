@@ -45,7 +45,7 @@ class SkinDecoder(nn.Module):
         camera: SpectralCamera | None = None,
         fast: bool = True,
         dtype: torch.dtype | None = None,
-    ):
+    ) -> None:
         super().__init__()
         self.lookup = SkinLookup(SkinReflectance(optics, dtype=dtype))
         self.camera = camera or SpectralCamera(dtype=dtype)

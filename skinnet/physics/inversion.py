@@ -97,7 +97,7 @@ class SkinInverse:
         nodes: tuple[int, int] = (256, 256),
         f_mel: tuple[float, float] = F_MEL_RANGE,
         f_blood: tuple[float, float] = F_BLOOD_RANGE,
-    ):
+    ) -> None:
         names = ("f_mel", "f_blood")
         for name, (low, high), count in zip(names, (f_mel, f_blood), nodes, strict=True):
             _check_axis(name, low, high, count)

@@ -58,7 +58,7 @@ class SkinLookup(nn.Module):
 
     table: Tensor
 
-    def __init__(self, reflectance: SkinReflectance, nodes: tuple[int, int] = _NODES):
+    def __init__(self, reflectance: SkinReflectance, nodes: tuple[int, int] = _NODES) -> None:
         super().__init__()
         self.reflectance = reflectance
         self.nodes = nodes

@@ -42,7 +42,7 @@ class NearestColour:
         [5, 1]
     """
 
-    def __init__(self, colours: Float[np.ndarray, "rows columns 3"]):
+    def __init__(self, colours: Float[np.ndarray, "rows columns 3"]) -> None:
         nodes = colours.reshape(-1, 3).astype(np.float64)
         self._nodes = np.array([*nodes.T, -0.5 * (nodes**2).sum(1)])
         self._tests = _dominance_tests(colours).reshape(len(nodes), 28).astype(np.float32)

@@ -59,7 +59,9 @@ class SkinReflectance(nn.Module):
     e_oxy: Tensor
     e_deoxy: Tensor
 
-    def __init__(self, optics: SkinOptics | str = "calibrated", dtype: torch.dtype | None = None):
+    def __init__(
+        self, optics: SkinOptics | str = "calibrated", dtype: torch.dtype | None = None
+    ) -> None:
         super().__init__()
         optics = SkinOptics.preset(optics) if isinstance(optics, str) else optics
         dtype = dtype or torch.get_default_dtype()

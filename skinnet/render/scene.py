@@ -48,7 +48,7 @@ class Scene:
         (array([0]), array([[0.333, 0.333, 0.333]]))
     """
 
-    def __init__(self, mesh: Mesh):
+    def __init__(self, mesh: Mesh) -> None:
         if len(mesh.triangles) == 0 or not np.isfinite(mesh.vertices).all():
             raise InputError(f"{mesh.name} has no triangles, or vertices that are not finite.")
         self.mesh = mesh

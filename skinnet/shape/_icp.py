@@ -38,7 +38,7 @@ class IcpStage:
         vertices: int,
         modes: int,
         prior: float = 0.0,
-    ):
+    ) -> None:
         self.scan, self.settings = scan, settings
         self.millimetres = model.millimetres
         self.prior = max(prior, settings.map_weight)

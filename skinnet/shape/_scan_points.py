@@ -43,7 +43,7 @@ class ScanPoints:
     bounds the points' spacing, and a fit measures to the tangent plane.
     """
 
-    def __init__(self, mesh: Mesh):
+    def __init__(self, mesh: Mesh) -> None:
         vertices, triangles = mesh.vertices.astype(np.float64), mesh.triangles
         triangles = triangles[~find_spikes(vertices, triangles)[triangles].any(1)]
         if not len(triangles):

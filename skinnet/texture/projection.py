@@ -104,7 +104,7 @@ def project_texture(
 class _TexturedScan:
     """A textured scan with a search structure for closest points."""
 
-    def __init__(self, scan: Mesh, max_distance: float, min_cosine: float):
+    def __init__(self, scan: Mesh, max_distance: float, min_cosine: float) -> None:
         assert scan.uv is not None and scan.uv_triangles is not None and scan.texture is not None
         self.max_distance, self.min_cosine = max_distance, min_cosine
         self.triangles, self.uv_triangles = scan.triangles, scan.uv_triangles

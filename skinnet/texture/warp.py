@@ -66,7 +66,7 @@ class TextureSpace:
         uv: Float[np.ndarray, "points 2"],
         triangles: Int[np.ndarray, "triangles 3"],
         size: int,
-    ):
+    ) -> None:
         if triangles.size == 0 or triangles.min() < 0 or triangles.max() >= len(uv):
             raise InputError(
                 f"A texture space needs triangles with corners from 0 to {len(uv) - 1}, the "

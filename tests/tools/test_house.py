@@ -24,9 +24,11 @@ def test_it_prints_json(capsys: pytest.CaptureFixture[str]) -> None:
 @pytest.fixture
 def package(tmp_path, monkeypatch):
     """Two rooms that import each other, one of them upwards."""
+    upwards = "from skinnet.high.upper import shout\n\n\n"
+    downwards = "from skinnet.low.lower import whisper\n\n\n"
     for room, source in {
-        "low": "from skinnet.high.upper import shout\n\n\ndef whisper(text: str) -> str:\n    return shout(text)\n",
-        "high": "from skinnet.low.lower import whisper\n\n\ndef shout(text):\n    '''Shout.'''\n    return whisper(text)\n",
+        "low": upwards + "def whisper(text: str) -> str:\n    return shout(text)\n",
+        "high": downwards + "def shout(text):\n    'Shout.'\n    return whisper(text)\n",
     }.items():
         (tmp_path / room).mkdir()
         (tmp_path / room / "__init__.py").write_text("")

@@ -46,7 +46,7 @@ class SyntheticScenes(Dataset[SceneParameters]):
         seed: int,
         skins: ModelSkins | None = None,
         domain_randomised: bool = False,
-    ):
+    ) -> None:
         self.heads, self.samples, self.skins = heads, samples, skins
         self.domain_randomised = domain_randomised
         self.key = (seed, SPLITS[split], 7)
@@ -105,7 +105,7 @@ class SyntheticFaces(LightningDataModule):
         skins: str | None = None,
         seed: NonNegativeInt = 0,
         workers: NonNegativeInt = 0,
-    ):
+    ) -> None:
         super().__init__()
         self.size, self.batch_size = size, batch_size
         self.heads = {"train": heads, "val": val_heads, "test": test_heads}

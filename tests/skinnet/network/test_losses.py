@@ -2,26 +2,9 @@
 
 import pytest
 import torch
+from plain_maps import capture, maps
 
-from skinnet.network import F_MEL_MAX, SkinMaps, losses
-from skinnet.physics import Capture
-
-
-def maps(**changes: torch.Tensor) -> SkinMaps:
-    plain = torch.full((2, 8, 8), 0.05)
-    found = SkinMaps(
-        plain, plain, torch.ones(2, 8, 8), 0 * plain, torch.zeros(2, 3, 8, 8), torch.ones(2, 8, 8)
-    )
-    return found._replace(**changes)
-
-
-def capture(camera: float = 0.0, balance: float = 0.0) -> Capture:
-    return Capture(
-        torch.full((2, 9), 1 / 9),
-        torch.full((2,), 6500.0),
-        torch.full((2, 6), camera),
-        torch.full((2, 2), balance),
-    )
+from skinnet.network import F_MEL_MAX, SkinMaps, losses, priors
 
 
 def test_a_perfect_reading_costs_nothing() -> None:
@@ -34,9 +17,9 @@ def test_a_perfect_reading_costs_nothing() -> None:
         losses.pigment_mse(truth, truth) == 0 and losses.error_shading_covariance(truth, truth) == 0
     )
     assert losses.soft_iou(truth, ones) == pytest.approx(0, abs=1e-6)
-    assert losses.camera_prior(capture()) == 0
-    assert losses.off_skin_shading(truth, ones) == 0
-    assert losses.shading_smoothness(truth, ones) == 0
+    assert priors.camera_prior(capture()) == 0
+    assert priors.off_skin_shading(truth, ones) == 0
+    assert priors.shading_smoothness(truth, ones) == 0
     assert losses.mask_cross_entropy(truth, ones) == pytest.approx(0, abs=1e-5)
 
 
@@ -103,21 +86,6 @@ def test_soft_iou_is_of_masks_above_one_half() -> None:
     assert losses.soft_iou(maps(), 0.1 * skin) > 0.9
 
 
-def test_shading_from_luminance_ignores_the_level() -> None:
-    photograph = torch.full((2, 3, 8, 8), 0.2)
-    for level in (0.3, 3.0):
-        found = maps(shading=torch.full((2, 8, 8), level))
-        assert losses.shading_from_luminance(found, photograph, torch.ones(2, 8, 8)) < 1e-5
-
-
-def test_priors_grow_with_what_they_penalise() -> None:
-    assert losses.camera_prior(capture(camera=1.0)).item() == pytest.approx(0.5)
-    assert losses.camera_prior(capture(balance=0.05)).item() == pytest.approx(0.5)
-    ones = torch.ones(2, 8, 8)
-    assert losses.specular_sparsity(maps(specular=0.2 * ones), ones).item() == pytest.approx(0.2)
-    assert losses.off_skin_shading(maps(), 0 * ones) == 1
-
-
 def test_white_balance_l1_is_in_standard_deviations() -> None:
     found = losses.white_balance_l1(capture(balance=0.05), capture())
     assert found.item() == pytest.approx(1)
@@ -137,10 +105,10 @@ def test_the_loss_of_a_batch_is_the_mean_of_those_of_its_halves() -> None:
         one, other = (SkinMaps(*(value[part] for value in each)) for each in (guess, truth))
         return torch.stack([
             losses.appearance_l1(made[part], photograph[part], mask[part]),
-            losses.specular_sparsity(one, mask[part]),
-            losses.shading_smoothness(one, mask[part]),
-            losses.shading_from_luminance(one, photograph[part], mask[part]),
-            losses.off_skin_shading(one, mask[part]),
+            priors.specular_sparsity(one, mask[part]),
+            priors.shading_smoothness(one, mask[part]),
+            priors.shading_from_luminance(one, photograph[part], mask[part]),
+            priors.off_skin_shading(one, mask[part]),
             losses.mask_cross_entropy(one, mask[part]),
             losses.pigment_l1(one, other),
             losses.pigment_mse(one, other),
@@ -171,23 +139,8 @@ def test_gradients_are_finite_at_the_edges() -> None:
         + losses.error_shading_covariance(found, truth)
         + losses.soft_iou(found, 0 * truth.mask)
         + losses.lighting_error(found, truth)
-        + losses.shading_smoothness(found, truth.mask)
+        + priors.shading_smoothness(found, truth.mask)
         + losses.mask_cross_entropy(found, 0 * truth.mask)
     )
     for gradient in torch.autograd.grad(total, guess, allow_unused=True):
         assert gradient is None or gradient.isfinite().all()
-
-
-def test_augmentation_consistency_compares_the_two_halves() -> None:
-    seen = SkinMaps(
-        *(torch.full((4, 6, 6), value) for value in (0.05, 0.04, 1.0, 0.0)),
-        torch.zeros(4, 3, 6, 6),
-        torch.ones(4, 6, 6),
-    )
-    mask = torch.ones(4, 6, 6)
-    assert losses.augmentation_consistency(seen, mask) == pytest.approx(0, abs=1e-6)
-    other = seen.melanin.clone()
-    other[2] = 0.1
-    root = (0.1 / F_MEL_MAX) ** (1 / 3) - (0.05 / F_MEL_MAX) ** (1 / 3)
-    found = losses.augmentation_consistency(seen._replace(melanin=other), mask)
-    assert found == pytest.approx(root / 2, rel=1e-4)
