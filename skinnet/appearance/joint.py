@@ -25,7 +25,8 @@ class JointModel(nn.Module):
     alpha [..., S] and beta [..., K], and gradients. The weight w trades shape for appearance.
 
     Source:
-        Cootes et al. 2001, Active Appearance Models.
+        Cootes et al. 2001, Active Appearance Models; section 7 of Alotaibi & Smith 2017 names the
+        joint model as future work.
 
     Example:
         >>> rng = np.random.default_rng(0)

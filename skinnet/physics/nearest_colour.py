@@ -36,6 +36,9 @@ class NearestColour:
     Args:
         colours: Grid of colours [rows, columns, 3].
 
+    Source:
+        Section 4.4 of Alotaibi & Smith 2017 names the search; the way to do it is our own.
+
     Example:
         >>> grey = np.linspace(0, 1, 6).reshape(2, 3, 1) * np.ones(3)
         >>> NearestColour(grey)(np.array([[0.9, 1.0, 1.1], [0.3, 0.2, 0.1]])).tolist()

@@ -146,7 +146,7 @@ class SkinReflectance(nn.Module):
 
     @property
     def mu_base(self) -> Float[Tensor, "wavelength"]:
-        """Absorption of skin without pigment, cm^-1 (Table 2; Jacques 1998)."""
+        """Absorption of skin without pigment, cm^-1 (section 3.2, Table 2; Jacques 1998)."""
         return self.base_floor + self.base_scale * torch.exp(-(self.wavelengths - 154) / 66.2)
 
     @property

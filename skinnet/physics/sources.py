@@ -99,7 +99,7 @@ def load_spectrum_to_srgb(light: str, camera: str) -> Float[Tensor, "wavelength 
         InputError: As `load_light` and `load_camera`.
 
     Source:
-        Equation 4 of Alotaibi & Smith 2017; see `spectrum_to_srgb`.
+        Equation 4 and section 4.3 of Alotaibi & Smith 2017; see `spectrum_to_srgb`.
 
     Example:
         >>> matrix = load_spectrum_to_srgb("LED-B3", "Nikon D200")

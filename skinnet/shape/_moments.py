@@ -41,6 +41,8 @@ def compute_moments(
     `weights` (None: 1) multiply the squared residuals. With `normals`, unit vectors in the model's
     frame, a residual along the surface counts only `sliding` times as much as one across it:
     W_i = w_i (n n^T + sliding (I - n n^T)).
+
+    They are what Equation 6 of Alotaibi & Smith 2017 needs of A^T A and A^T y.
     """
     weights = np.ones(len(mean)) if weights is None else weights
     origin = weights @ points / weights.sum()
