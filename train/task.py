@@ -14,7 +14,7 @@ from torch.optim import AdamW, Optimizer
 from torch.optim.lr_scheduler import LambdaLR
 
 from skinnet.errors import InputError
-from skinnet.network import AutoencoderConfig, Reading, SkinAutoencoder, SkinMaps, losses
+from skinnet.network import AutoencoderConfig, Reading, SkinAutoencoder, SkinMaps, losses, priors
 from skinnet.physics import Capture
 from train.batch import Batch
 from train.metrics import ReadingMetrics
@@ -224,7 +224,7 @@ def compute_losses(reading: Reading, batch: Batch) -> dict[str, Tensor]:
     parts = {
         "appearance": losses.appearance_l1(reading.reconstruction, linear, mask),
         "background_reconstruction": losses.appearance_l1(reading.reconstruction, linear, 1 - mask),
-        "off_skin_shading": losses.off_skin_shading(reading.maps, mask),
+        "off_skin_shading": priors.off_skin_shading(reading.maps, mask),
     }
     if batch.truth is not None and batch.capture is not None:
         return parts | _compare_with_truth(reading, batch.truth, batch.capture)
@@ -249,13 +249,13 @@ def _compute_priors(reading: Reading, batch: Batch, linear: Tensor) -> dict[str,
     maps, mask = reading.maps, batch.mask
     parts = {}
     if batch.paired:
-        parts["augmentation_consistency"] = losses.augmentation_consistency(maps, mask)
+        parts["augmentation_consistency"] = priors.augmentation_consistency(maps, mask)
     return parts | {
         "mask_guess": losses.mask_cross_entropy(maps, mask),
-        "camera": losses.camera_prior(reading.capture),
-        "specular": losses.specular_sparsity(maps, mask),
-        "smoothness": losses.shading_smoothness(maps, mask),
-        "shading": losses.shading_from_luminance(maps, linear, mask),
+        "camera": priors.camera_prior(reading.capture),
+        "specular": priors.specular_sparsity(maps, mask),
+        "smoothness": priors.shading_smoothness(maps, mask),
+        "shading": priors.shading_from_luminance(maps, linear, mask),
     }
 
 
