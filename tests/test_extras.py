@@ -23,6 +23,7 @@ def test_a_missing_extra_is_named(package: str, missing: str, arguments: list[st
 
 
 @pytest.mark.parametrize("missing", ["jsonargparse", "trimesh", "embreex", "torch"])
+@pytest.mark.slow
 def test_a_verb_without_the_scans_extra_names_it(missing: str) -> None:
     code = (
         "import sys\n"

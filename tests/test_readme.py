@@ -38,6 +38,7 @@ def test_python_runs(code: str) -> None:
     exec(code, {})
 
 
+@pytest.mark.slow
 def test_commands_run() -> None:
     commands = [line for block in blocks("sh") for line in block.splitlines()]
     ours = [line for line in commands if line.startswith("skinnet ") and "--model" not in line]

@@ -11,6 +11,8 @@ from benchmarks import appearance, calibration, decoder, lookup, report, spectra
 from benchmarks.biofacenet import BioFaceNetShape
 from skinnet.physics import PRESETS, SkinReflectance
 
+pytestmark = pytest.mark.slow
+
 
 @pytest.fixture(scope="module")
 def found() -> report.Results:

@@ -17,6 +17,8 @@ from export.__main__ import main
 from skinnet.network import AutoencoderConfig, SkinAutoencoder
 from skinnet.network._weights import WEIGHTS_FORMAT
 
+pytestmark = pytest.mark.slow
+
 
 @pytest.fixture(scope="module")
 def exported(tmp_path_factory: pytest.TempPathFactory) -> Path:

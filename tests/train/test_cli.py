@@ -15,6 +15,8 @@ from skinnet.network.encoder import _EARLIER_NAMES
 from train.callbacks import LastCheckpoint, PictureGrid
 from train.cli import main
 
+pytestmark = pytest.mark.slow
+
 Fit = Callable[..., int]
 
 

@@ -8,6 +8,8 @@ from skimage.data import astronaut
 
 from train.cli import main
 
+pytestmark = pytest.mark.slow
+
 SMALL = (
     "--model.widths=[4,8]",
     "--model.weights=null",

@@ -67,6 +67,7 @@ def test_the_crop_stays_inside_the_picture() -> None:
     assert frame_head(Box(-3, -2, 90, 91), 100, 80) == Box(0, 0, 100, 80)
 
 
+@pytest.mark.slow
 def test_portraits_are_found(shared_data: Path) -> None:
     folder = shared_data / "faces" / "congress"
     with (folder / "index.csv").open() as file:

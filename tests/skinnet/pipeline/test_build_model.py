@@ -15,6 +15,8 @@ from skinnet.appearance.linear import LinearModel
 from skinnet.appearance.maps_file import load_maps, save_maps
 from skinnet.cli import main
 
+pytestmark = pytest.mark.slow
+
 Refused = Callable[..., str]
 
 

@@ -7,6 +7,8 @@ from pipeline_scans import FAST, SIZE
 
 from skinnet.cli import PIPELINE, main
 
+pytestmark = pytest.mark.slow
+
 CONFIGS = Path(__file__).parents[3] / "configs"
 
 

@@ -12,6 +12,8 @@ from pipeline_scans import SIZE
 from skinnet.appearance.maps_file import load_maps
 from skinnet.cli import main
 
+pytestmark = pytest.mark.slow
+
 Refused = Callable[..., str]
 
 

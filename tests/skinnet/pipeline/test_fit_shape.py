@@ -13,6 +13,8 @@ from skinnet.cli import main
 from skinnet.mesh.mesh_file import read_mesh
 from skinnet.pipeline._fit_archive import load_fit
 
+pytestmark = pytest.mark.slow
+
 Refused = Callable[..., str]
 
 

@@ -14,6 +14,8 @@ from skinnet.appearance.maps_file import load_maps
 from skinnet.cli import main
 from skinnet.mesh.mesh_file import read_mesh
 
+pytestmark = pytest.mark.slow
+
 Refused = Callable[..., str]
 
 

@@ -9,6 +9,8 @@ import pytest
 from skinnet.appearance.maps_file import load_maps
 from skinnet.cli import main
 
+pytestmark = pytest.mark.slow
+
 Refused = Callable[..., str]
 
 

@@ -3,6 +3,7 @@
 from pathlib import Path
 
 import numpy as np
+import pytest
 import torch
 from torch.utils.data import DataLoader
 
@@ -49,6 +50,7 @@ def test_worker_processes_hand_over_the_same_scenes(data: SyntheticFaces) -> Non
     assert all(torch.equal(a, b) for a, b in pairs)
 
 
+@pytest.mark.slow
 def test_training_alone_sees_the_darkest_and_shiniest_skin(casts: Path) -> None:
     data = SyntheticFaces(64, 4, heads=4, val_heads=4, val_samples=80, geometry=str(casts))
     data.setup("fit")

@@ -40,6 +40,7 @@ def test_casts_are_made_once(tmp_path: Path, cast_numbers: list[int]) -> None:
     _same(first, second)
 
 
+@pytest.mark.slow
 def test_several_processes_cast_the_same(tmp_path: Path) -> None:
     one = head_cache.load_or_cast_heads(tmp_path / "one", SIZE, 3, "val", seed=0)
     two = head_cache.load_or_cast_heads(tmp_path / "two", SIZE, 3, "val", seed=0, workers=2)
