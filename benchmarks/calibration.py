@@ -24,7 +24,7 @@ from benchmarks.report import Results, main
 from examples.lightstage import CAMERA, FILTER, LIGHT, paint_person
 from skinnet import InputError, calibration
 from skinnet.appearance.colour import SkinColour
-from skinnet.calibration.calibrate import calibrate
+from skinnet.calibration.colour_transform import calibrate
 from skinnet.images import linear_to_srgb, srgb_to_linear, to_uint8
 from skinnet.physics import SkinLookup, SkinReflectance, load_spectrum_to_srgb
 from skinnet.pipeline.calibrate import ColourSettings

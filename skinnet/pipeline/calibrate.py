@@ -12,7 +12,7 @@ import torch
 from jaxtyping import Float
 
 from skinnet.appearance.colour import SkinColour
-from skinnet.calibration.calibrate import calibrate
+from skinnet.calibration.colour_transform import calibrate
 from skinnet.calibration.exposure import exposure
 from skinnet.errors import InputError
 from skinnet.images.srgb import srgb_to_linear

@@ -5,7 +5,7 @@ import pytest
 from scipy.interpolate import CubicSpline
 
 from skinnet.appearance.colour import SkinColour
-from skinnet.calibration.calibrate import calibrate
+from skinnet.calibration.colour_transform import calibrate
 from skinnet.errors import InputError
 
 MIX = np.array([[0.8, 0.05, 0.01], [0.03, 0.86, 0.04], [0.01, 0.06, 0.92]])
