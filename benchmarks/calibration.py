@@ -5,8 +5,8 @@ all, the paler or the darker half of the model's colours, with relative noise of
 transforms and two seeds each. 14 trials have 25 synthetic people each, the first those of
 `examples.lightstage`, painted on the face model's texture chart in 8-bit sRGB; brows, lashes and
 lips are among their colours. `error` and `uncertainty` are relative, in the Frobenius norm.
-`covered` is the share of trials whose error is at most the claimed uncertainty. A refusal counts as
-an error of 1 that no claim covers.
+`covered` is the share of trials whose error is at most the claimed uncertainty. A refusal counts
+as an error of 1 that no claim covers. `lines` counts the room without the exposure.
 """
 
 import time
@@ -24,10 +24,10 @@ from benchmarks.report import Results, main
 from examples.lightstage import CAMERA, FILTER, LIGHT, paint_person
 from skinnet import InputError, calibration
 from skinnet.appearance.colour import SkinColour
-from skinnet.calibration.colour_transform import calibrate
+from skinnet.calibration import calibrate
 from skinnet.images import linear_to_srgb, srgb_to_linear, to_uint8
 from skinnet.physics import SkinLookup, SkinReflectance, load_spectrum_to_srgb
-from skinnet.pipeline.calibrate import ColourSettings
+from skinnet.pipeline import ColourSettings
 from skinnet.shape import load_shape_model
 from skinnet.texture import TextureSpace
 
@@ -142,7 +142,7 @@ def known_trials(cover: str, noise: float, seeds: int, count: int) -> Iterator[T
 def crowd_trials(crowds: int, count: int) -> Iterator[Trial]:
     """Trials of people, under the light and camera of the example."""
     matrix = load_spectrum_to_srgb(LIGHT, CAMERA).numpy()
-    model = ColourSettings(LIGHT, CAMERA)._model_colours(matrix)
+    model = ColourSettings(LIGHT, CAMERA)._tabulate_model(matrix)
     for crowd in range(crowds):
         yield attempt(crowd_colours(crowd, count, matrix), model, FILTER, crowd)
 

@@ -156,8 +156,8 @@ def main() -> None:
     maps.mkdir(parents=True, exist_ok=True)
     files, images, mask = warp_portraits(options.portraits)
     settings = ColourSettings(calibration=options.calibration)
-    colours = settings.calibrated([image[mask].astype(np.float64) for image in images])
-    rows = zip(files, images, colours.found.exposures, strict=True)
+    colours = settings.calibrate([image[mask].astype(np.float64) for image in images])
+    rows = zip(files, images, colours.calibration.exposures, strict=True)
     for file, image, factor in rows:
         texture, off = invert_texture(WarpedTexture(image, mask), factor, colours, file.stem)
         save_maps(maps / f"{file.stem}_maps.npz", texture, colours.colour)

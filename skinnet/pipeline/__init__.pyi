@@ -1,3 +1,4 @@
+from .calibrate import CalibratedColours as CalibratedColours
 from .calibrate import ColourSettings as ColourSettings
 from .command import run_verb as run_verb
 from .initial_pose import find_initial_pose as find_initial_pose
@@ -8,6 +9,7 @@ from .texture_space import WarpSettings as WarpSettings
 from .texture_space import embed_model as embed_model
 
 __all__ = [
+    "CalibratedColours",
     "ColourSettings",
     "RelightSettings",
     "SentenceParser",

@@ -15,7 +15,7 @@ from skinnet.pipeline._maps_writer import MAPS_ENDS, write_maps
 from skinnet.pipeline._progress import compute_fingerprint, log, read_finished, write_record
 from skinnet.pipeline._scans import add_scan_arguments, collect_options, process_scans
 from skinnet.pipeline._warp_scan import make_texture_space, warp_scan
-from skinnet.pipeline.calibrate import Colours, ColourSettings
+from skinnet.pipeline.calibrate import CalibratedColours, ColourSettings
 from skinnet.pipeline.texture_inversion import invert_texture
 from skinnet.pipeline.texture_space import WarpSettings, embed_model
 from skinnet.shape.fit_settings import FitSettings
@@ -62,13 +62,15 @@ def run(config: Namespace) -> int:
     code = process_scans(config.scan, options, config.output, process)
     if not scans:
         return code
-    colours = config.colour.calibrated([scan.colours for scan in scans])
-    for scan, exposure in zip(scans, colours.found.exposures, strict=True):
+    colours = config.colour.calibrate([scan.colours for scan in scans])
+    for scan, exposure in zip(scans, colours.calibration.exposures, strict=True):
         write_scan_maps(scan, exposure, model, colours)
     return code
 
 
-def write_scan_maps(scan: WarpedScan, exposure: float, model: ShapeModel, colours: Colours) -> None:
+def write_scan_maps(
+    scan: WarpedScan, exposure: float, model: ShapeModel, colours: CalibratedColours
+) -> None:
     """Invert the texture of a scan and write its maps, unless the same inputs gave them before."""
     path, stem = scan.fitted.scan.path, scan.fitted.stem
     fingerprint = compute_fingerprint(
@@ -102,7 +104,11 @@ def write_scan_maps(scan: WarpedScan, exposure: float, model: ShapeModel, colour
 
 
 def summarise_maps(
-    scan: WarpedScan, texture: SkinTexture, off_manifold: float, exposure: float, colours: Colours
+    scan: WarpedScan,
+    texture: SkinTexture,
+    off_manifold: float,
+    exposure: float,
+    colours: CalibratedColours,
 ) -> dict[str, Any]:
     """Summarise the maps of a scan for their record."""
     mask = texture.mask
@@ -116,8 +122,8 @@ def summarise_maps(
         "rms_mm": scan.fitted.fit.rms,
         "texels": int(mask.sum()),
         "exposure": exposure,
-        "transform": colours.found.transform.tolist(),
-        "calibration": colours.found.record,
+        "transform": colours.calibration.transform.tolist(),
+        "calibration": colours.calibration.record,
         "settings": asdict(colours.settings),
         "off_manifold": off_manifold,
         "offset_rms": float(np.sqrt(np.mean(texture.offset[mask] ** 2))),

@@ -13,7 +13,7 @@ from jaxtyping import Float
 
 from skinnet.appearance.colour import SkinColour
 from skinnet.calibration.colour_transform import calibrate
-from skinnet.calibration.exposure import exposure
+from skinnet.calibration.exposure import fit_exposure
 from skinnet.errors import InputError
 from skinnet.images.srgb import srgb_to_linear
 from skinnet.physics.inversion import SkinInverse
@@ -22,19 +22,19 @@ from skinnet.physics.reflectance import SkinReflectance
 from skinnet.physics.sources import load_spectrum_to_srgb
 from skinnet.pipeline._progress import log
 
-WAYS = ("exposure", "common", "full", "none")
-NODES = (256, 256)
-FEW = 5
-"""Scans below which a full calibration cannot be trusted to have seen all kinds of skin."""
+_WAYS = ("exposure", "common", "full", "none")
+_NODES = (256, 256)
+_FEW_SCANS = 5
+"""Scans below which a full calibration is unlikely to have seen all kinds of skin."""
 
-LOOSE = 0.03
-"""Relative standard error of a transform that is worth a word."""
+_UNCERTAIN = 0.03
+"""Relative uncertainty of a transform above which the log says so."""
 
-SAMPLE = 100_000
-"""Colours of all scans together that a calibration of all of them is given."""
+_MAX_COLOURS = 100_000
+"""Colours of all scans together that one calibration is given."""
 
-Samples = list[Float[np.ndarray, "_ 3"]]
-Matrix = Float[np.ndarray, "wavelength 3"]
+_Samples = list[Float[np.ndarray, "_ 3"]]
+_Matrix = Float[np.ndarray, "wavelength 3"]
 
 
 @dataclass(frozen=True)
@@ -50,10 +50,10 @@ class ColourSettings:
             in one light), none, or a _calibration.json written before.
         white: sRGB, 0 to 255, of something white or grey in the textures; their colours are divided
             by its tint. Without it they are taken to be balanced.
-        f_mel: range of melanin in which is looked.
-        f_blood: range of hemoglobin in which is looked.
-        refine: go on from the nearest node of the table to a continuous answer; the paper does not.
-        seed: of the colours that a calibration looks at.
+        f_mel: range of melanin of the look-up table.
+        f_blood: range of hemoglobin of the look-up table.
+        refine: refine the nearest node of the table to a continuous answer; the paper does not.
+        seed: seed of the subsample of colours that a calibration uses.
     """
 
     light: str = "D65"
@@ -71,27 +71,37 @@ class ColourSettings:
         load_spectrum_to_srgb(self.light, self.camera)
         SkinOptics.preset(self.optics)
         self.balance()
-        if self.calibration not in WAYS:
-            self._from_file([])
+        if self.calibration not in _WAYS:
+            self._read_transform([])
 
-    def calibrated(self, samples: Samples) -> "Colours":
-        """The calibration of some scans together, each given by its linear RGB colours [n, 3]."""
+    def calibrate(self, samples: _Samples) -> "CalibratedColours":
+        """Calibrate some scans together.
+
+        Args:
+            samples: Linear RGB colours of each scan.
+
+        Returns:
+            The calibrated colours, ready to be inverted.
+
+        Raises:
+            InputError: The colours do not determine the calibration that is asked for.
+        """
         samples = [self.balance() * one for one in samples]
         matrix = load_spectrum_to_srgb(self.light, self.camera).numpy()
-        ways: dict[str, Callable[[], Calibrated]] = {
-            "exposure": lambda: self._exposures(matrix, samples),
-            "common": lambda: self._common(matrix, samples),
-            "full": lambda: self._full(matrix, samples),
-            "none": lambda: Calibrated(np.eye(3), [1.0] * len(samples), {}),
+        ways: dict[str, Callable[[], _ScanCalibration]] = {
+            "exposure": lambda: self._fit_exposures(matrix, samples),
+            "common": lambda: self._fit_common_exposure(matrix, samples),
+            "full": lambda: self._fit_transform(matrix, samples),
+            "none": lambda: _ScanCalibration(np.eye(3), [1.0] * len(samples), {}),
         }
-        way = ways.get(self.calibration, lambda: self._from_file(samples))
-        found = way()
-        log(f"calibration ({self.calibration}): {found.told()}")
-        colour = self._colour(matrix, found.transform)
-        return Colours(self, colour, found)
+        way = ways.get(self.calibration, lambda: self._read_transform(samples))
+        calibration = way()
+        log(f"calibration ({self.calibration}): {calibration.describe()}")
+        colour = self._make_colour(matrix, calibration.transform)
+        return CalibratedColours(self, colour, calibration)
 
     def balance(self) -> Float[np.ndarray, "3"]:
-        """What the channels of a texture are multiplied by so that `white` becomes grey."""
+        """Compute the factors of the channels of a texture that make `white` grey."""
         if self.white is None:
             return np.ones(3)
         if not all(0 < value <= 255 for value in self.white):
@@ -99,43 +109,40 @@ class ColourSettings:
         linear = srgb_to_linear(np.array(self.white, np.uint8))
         return np.asarray(linear[1] / linear, np.float64)
 
-    def _exposures(self, matrix: Matrix, samples: Samples) -> "Calibrated":
-        model = self._model_colours(matrix).reshape(-1, 3)
-        return Calibrated(np.eye(3), [exposure(one, model, self.seed) for one in samples], {})
+    def _fit_exposures(self, matrix: _Matrix, samples: _Samples) -> "_ScanCalibration":
+        model = self._tabulate_model(matrix).reshape(-1, 3)
+        return _ScanCalibration(
+            np.eye(3), [fit_exposure(one, model, self.seed) for one in samples], {}
+        )
 
-    def _common(self, matrix: Matrix, samples: Samples) -> "Calibrated":
-        model = self._model_colours(matrix).reshape(-1, 3)
-        factor = exposure(self._pooled(samples), model, self.seed)
-        return Calibrated(np.eye(3), [factor] * len(samples), {})
+    def _fit_common_exposure(self, matrix: _Matrix, samples: _Samples) -> "_ScanCalibration":
+        model = self._tabulate_model(matrix).reshape(-1, 3)
+        factor = fit_exposure(self._pool(samples), model, self.seed)
+        return _ScanCalibration(np.eye(3), [factor] * len(samples), {})
 
-    def _pooled(self, samples: Samples) -> Float[np.ndarray, "colours 3"]:
-        """Some colours of every scan, as many of each."""
-        draw = np.random.default_rng(self.seed)
-        most = max(SAMPLE // len(samples), 1)
-        return np.concatenate([draw.permutation(one)[:most] for one in samples])
+    def _pool(self, samples: _Samples) -> Float[np.ndarray, "colours 3"]:
+        """Sample the same number of colours of every scan."""
+        rng = np.random.default_rng(self.seed)
+        count = max(_MAX_COLOURS // len(samples), 1)
+        return np.concatenate([rng.permutation(one)[:count] for one in samples])
 
-    def _full(self, matrix: Matrix, samples: Samples) -> "Calibrated":
-        if len(samples) < FEW:
+    def _fit_transform(self, matrix: _Matrix, samples: _Samples) -> "_ScanCalibration":
+        if len(samples) < _FEW_SCANS:
             log(
-                f"{len(samples)} scans hardly show all kinds of skin; the transform they give may "
-                "stretch one person over all of them."
+                f"{len(samples)} scans hardly show all kinds of skin; the transform that fits them "
+                "may be wrong for others."
             )
-        found = calibrate(self._pooled(samples), self._model_colours(matrix), self.seed)
-        if found.uncertainty > LOOSE:
+        found = calibrate(self._pool(samples), self._tabulate_model(matrix), self.seed)
+        if found.uncertainty > _UNCERTAIN:
             log(
-                f"these colours fix the transform to {found.uncertainty:.0%} only, however well "
-                "they fit it; take scans of more kinds of skin, or one exposure a scan "
+                f"these colours determine the transform only to {found.uncertainty:.0%}, however "
+                "well it fits them; take scans of more kinds of skin, or one exposure a scan "
                 "(--colour.calibration exposure)."
             )
-        log(
-            f"the transform is tied to {found.edges} stretches of the edge of the model's colours; "
-            "if these skins end inside the range of --colour.f_mel and --colour.f_blood instead, "
-            "it is wrong by as much."
-        )
         record = {name: value for name, value in asdict(found).items() if name != "transform"}
-        return Calibrated(found.transform, [1.0] * len(samples), record)
+        return _ScanCalibration(found.transform, [1.0] * len(samples), record)
 
-    def _from_file(self, samples: Samples) -> "Calibrated":
+    def _read_transform(self, samples: _Samples) -> "_ScanCalibration":
         path = Path(self.calibration)
         try:
             transform = np.array(json.loads(path.read_text(encoding="utf-8"))["transform"], float)
@@ -146,13 +153,13 @@ class ColourSettings:
             ) from error
         if transform.shape != (3, 3) or not np.isfinite(transform).all():
             raise InputError(f"{path} has no 3 x 3 transform.")
-        return Calibrated(transform, [1.0] * len(samples), {"file": str(path)})
+        return _ScanCalibration(transform, [1.0] * len(samples), {"file": str(path)})
 
-    def _colour(self, matrix: Matrix, transform: Float[np.ndarray, "3 3"]) -> SkinColour:
-        return SkinColour(matrix, transform, self.optics, NODES, self.light, self.camera)
+    def _make_colour(self, matrix: _Matrix, transform: Float[np.ndarray, "3 3"]) -> SkinColour:
+        return SkinColour(matrix, transform, self.optics, _NODES, self.light, self.camera)
 
-    def _model_colours(self, matrix: Matrix) -> Float[np.ndarray, "mel blood 3"]:
-        """Colours over the ranges that are looked in, a few thousand."""
+    def _tabulate_model(self, matrix: _Matrix) -> Float[np.ndarray, "mel blood 3"]:
+        """Tabulate the colours of the model over the ranges of the fractions, a few thousand."""
         axes = [
             torch.linspace(low**0.5, high**0.5, 64, dtype=torch.float64) ** 2
             for low, high in (self.f_mel, self.f_blood)
@@ -164,31 +171,37 @@ class ColourSettings:
 
 
 @dataclass(frozen=True)
-class Calibrated:
+class _ScanCalibration:
     """A transform of the model's colours, and the factor by which each scan's are multiplied."""
 
     transform: Float[np.ndarray, "3 3"]
     exposures: list[float]
     record: dict[str, Any]
 
-    def told(self) -> str:
-        """One line on it."""
+    def describe(self) -> str:
+        """Describe it in one line."""
         factors = ", ".join(f"{one:.3g}" for one in self.exposures)
         rows = "; ".join(" ".join(f"{value:.3f}" for value in row) for row in self.transform)
         return f"transform [{rows}], colours times {factors}"
 
 
 @dataclass(frozen=True)
-class Colours:
-    """A calibrated light and camera, ready to invert colours."""
+class CalibratedColours:
+    """A calibrated light and camera, ready to invert colours.
+
+    Attributes:
+        settings: What was asked for.
+        colour: From fractions to colours, with the transform.
+        calibration: The transform, and the exposure of each scan.
+    """
 
     settings: ColourSettings
     colour: SkinColour
-    found: Calibrated
+    calibration: _ScanCalibration
 
     @cached_property
     def inverse(self) -> SkinInverse:
         """The look-up from colours to fractions."""
         matrix = torch.from_numpy(self.colour.matrix @ self.colour.calibration.T)
         settings = self.settings
-        return self.colour.lookup.inverse(matrix, NODES, settings.f_mel, settings.f_blood)
+        return self.colour.lookup.inverse(matrix, _NODES, settings.f_mel, settings.f_blood)

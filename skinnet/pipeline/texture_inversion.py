@@ -6,12 +6,12 @@ import numpy as np
 import torch
 
 from skinnet.appearance.skin_texture import SkinTexture
-from skinnet.pipeline.calibrate import Colours
+from skinnet.pipeline.calibrate import CalibratedColours
 from skinnet.texture.warp import WarpedTexture
 
 
 def invert_texture(
-    warped: WarpedTexture, exposure: float, colours: Colours, name: str
+    warped: WarpedTexture, exposure: float, colours: CalibratedColours, name: str
 ) -> tuple[SkinTexture, float]:
     """Invert the colours of a texture to pigments and an offset.
 
