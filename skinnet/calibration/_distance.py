@@ -64,14 +64,14 @@ class GamutDistance:
         distance = np.linalg.norm(gap, axis=0)
         slope = 1 / np.hypot(transform @ model, self._level)
         normal = np.cross(point.row, point.column, axis=0)
-        inside = ((position > 0) & (position < surface.last)).all(0)
+        inside = np.all((position > 0) & (position < surface.last), axis=0)
 
         def differentiate(direction: Float[np.ndarray, "3 points"]) -> Float[np.ndarray, "_ 9"]:
             # The closest point follows along the surface: only this component changes.
             unit = direction / np.maximum(np.linalg.norm(direction, axis=0), 1e-12)
-            return -((unit * slope)[:, None] * model).reshape(9, -1).T
+            return np.asarray(-((unit * slope)[:, None] * model).reshape(9, -1).T)
 
-        return Match(model, distance, differentiate(gap), differentiate(normal), inside)
+        return Match(model, distance, differentiate(gap), differentiate(normal), np.asarray(inside))
 
     def measure_coverage(self, transform: Float[np.ndarray, "3 3"]) -> float:
         """Median distance from the model's nodes to the closest recorded colours."""

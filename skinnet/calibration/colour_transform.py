@@ -164,7 +164,8 @@ def _alternate(
     tree = cKDTree(data)
     for _ in range(_ALTERNATIONS):
         moved = model @ transform.T
-        to_model, to_data = cKDTree(moved).query(data)[1], tree.query(moved)[1]
+        to_model = np.asarray(cKDTree(moved).query(data)[1])
+        to_data = np.asarray(tree.query(moved)[1])
         matched = np.unique(to_model)
         # Both directions weigh the same, whatever their numbers of colours.
         weights = len(to_model) ** -0.5, len(matched) ** -0.5
