@@ -64,10 +64,10 @@ def test_the_claim_covers_the_error_of_a_sample_of_trials() -> None:
 
 
 def test_stray_colours_are_claimed_and_hardly_matter(model: Model) -> None:
-    data = known_colours(MIX)
-    data[:400] = np.random.default_rng(1).uniform(0.05, 0.6, (400, 3))
+    data = known_colours(MIX, count=8000)
+    clean = calibrate(data, model)
+    data[:160] = np.random.default_rng(1).uniform(0.05, 0.6, (160, 3))
     found = calibrate(data, model)
-    clean = calibrate(known_colours(MIX), model)
     assert error(found.transform, MIX) < min(found.uncertainty, 0.09)
     assert found.uncertainty > clean.uncertainty
 
@@ -109,7 +109,7 @@ def test_degenerate_colours_are_refused(
     model: Model, change: Callable[[Colours], Colours], words: str
 ) -> None:
     with pytest.raises(InputError, match=words):
-        calibrate(change(known_colours(MIX)), model)
+        calibrate(change(known_colours(MIX, count=5000)), model)
 
 
 def test_a_model_that_is_not_a_grid_is_refused(model: Model) -> None:
