@@ -1,6 +1,6 @@
 """Distances of recorded colours from the transformed colour surface of the model."""
 
-from functools import lru_cache
+from functools import cached_property
 from typing import NamedTuple
 
 import numpy as np
@@ -40,7 +40,7 @@ class GamutDistance:
         colours: Float[np.ndarray, "colours 3"],
         grid: Float[np.ndarray, "rows columns 3"],
         level: float,
-    ):
+    ) -> None:
         self._level = level * float(np.median(np.abs(colours)))
         self.log_scale = float(np.log(np.hypot(colours, self._level)).mean())
         self._colours = self._compress(colours.T)
@@ -76,9 +76,9 @@ class GamutDistance:
     def measure_coverage(self, transform: Float[np.ndarray, "3 3"]) -> float:
         """Median distance from the model's nodes to the closest recorded colours."""
         nodes = self._compress(self._half_steps[::2, ::2].reshape(-1, 3) @ transform.T)
-        return float(np.median(self._tree().query(nodes)[0]))
+        return float(np.median(self._tree.query(nodes)[0]))
 
-    @lru_cache(maxsize=1)  # noqa: B019
+    @cached_property
     def _tree(self) -> cKDTree:
         return cKDTree(self._colours.T)
 
