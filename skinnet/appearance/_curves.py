@@ -42,7 +42,7 @@ def choose_counts(
     """Choose the numbers of components to measure at; those given are checked.
 
     Raises:
-        InputError: if a model without one of the subjects cannot have them.
+        InputError: If a model without one of the subjects cannot have them.
     """
     if subjects < 3:
         raise InputError(f"Leaving one subject out needs three or more; the stack has {subjects}.")

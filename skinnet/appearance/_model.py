@@ -66,15 +66,15 @@ class AppearanceModel(nn.Module, ABC):
         """Fit principal components to a stack of subjects, in two passes over it.
 
         Args:
-            stack: the subjects.
-            components: number of components, less than that of subjects; None: all, up to 100.
-            mask: texels to model; None: those that all subjects have. A value that a subject lacks
+            stack: The subjects.
+            components: Number of components, less than that of subjects; None: all, up to 100.
+            mask: Texels to model; None: those that all subjects have. A value that a subject lacks
                 is the mean of the others.
-            scales: what each channel of features is divided by before the analysis; None: the
+            scales: What each channel of features is divided by before the analysis; None: the
                 default of the class.
 
         Raises:
-            InputError: if the subjects do not differ or span fewer components, the mask has another
+            InputError: If the subjects do not differ or span fewer components, the mask has another
                 size or a texel that no subject has, or a scale is not positive.
 
         Source:
@@ -125,9 +125,9 @@ class AppearanceModel(nn.Module, ABC):
         A mixture of subjects is made in the model's features, with weights of unit sum.
 
         Args:
-            stack: the subjects.
-            grams: inner products between their features, from `compute_grams`.
-            texels: number of texels of the mask to compare at; None: all.
+            stack: The subjects.
+            grams: Inner products between their features, from `compute_grams`.
+            texels: Number of texels of the mask to compare at; None: all.
         """
 
     @property
@@ -160,13 +160,13 @@ class AppearanceModel(nn.Module, ABC):
         """Compute the coefficients beta of a face by least squares over its known texels.
 
         Args:
-            texture: the face, at the model's resolution.
+            texture: The face, at the model's resolution.
 
         Returns:
             beta.
 
         Raises:
-            InputError: if the texture has another size, or too few known texels.
+            InputError: If the texture has another size, or too few known texels.
         """
         if texture.mask.shape != self.mask.shape:
             raise InputError(
@@ -199,8 +199,8 @@ class AppearanceModel(nn.Module, ABC):
         """Sample the coefficients beta of random faces from N(0, variances).
 
         Args:
-            count: number of faces.
-            seed: the same seed gives the same faces, however many follow.
+            count: Number of faces.
+            seed: The same seed gives the same faces, however many follow.
         """
         return self.statistics.sample(count, seed)
 
@@ -208,7 +208,7 @@ class AppearanceModel(nn.Module, ABC):
         """Write the model to a .npz file, all of it or nothing.
 
         Raises:
-            InputError: if the path does not end in .npz or cannot be written.
+            InputError: If the path does not end in .npz or cannot be written.
         """
         _model_arrays.save_model(path, type(self).__name__, self.statistics, self.mask, self.colour)
 
@@ -217,6 +217,6 @@ class AppearanceModel(nn.Module, ABC):
         """Read a model that `save` wrote; nothing is unpickled.
 
         Raises:
-            InputError: if the file is missing, damaged or of another kind.
+            InputError: If the file is missing, damaged or of another kind.
         """
         return cls(*_model_arrays.load_model(path, cls.__name__))

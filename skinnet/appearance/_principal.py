@@ -49,7 +49,7 @@ class PrincipalComponents:
         """Compute the coefficients beta by scaled least squares on the covered texels.
 
         Raises:
-            InputError: if too few texels are covered to determine beta.
+            InputError: If too few texels are covered to determine beta.
         """
         known = np.where(covered, features, self.mean).astype(np.float32)
         right = self.project_blocks(ArrayBlocks(known.reshape(1, -1), len(known)))[0]
@@ -143,13 +143,13 @@ def compute_components(
     Memory is that of the basis, 4 K C M bytes, and of a few blocks.
 
     Args:
-        blocks: features of the subjects.
-        grams: their inner products, from `compute_grams`.
-        scales: what each channel is divided by.
-        components: number of components; None: all, up to `MAX_COMPONENTS`.
+        blocks: Features of the subjects.
+        grams: Their inner products, from `compute_grams`.
+        scales: What each channel is divided by.
+        components: Number of components; None: all, up to `MAX_COMPONENTS`.
 
     Raises:
-        InputError: if the subjects do not differ or span fewer components.
+        InputError: If the subjects do not differ or span fewer components.
 
     Source:
         Section 5 and Equation 10 of Alotaibi & Smith 2017.

@@ -25,14 +25,14 @@ class SkinColour(nn.Module):
     Light, camera and calibration are fixed, so the colours of skin are a look-up table.
 
     Args:
-        matrix: takes a reflectance spectrum [33], 400 to 720 nm, to linear RGB [3] under the light
+        matrix: Takes a reflectance spectrum [33], 400 to 720 nm, to linear RGB [3] under the light
             and the camera; None: daylight D65 and the mean of the measured cameras.
-        calibration: colour transform that multiplies this RGB from the left (section 4.3); None:
+        calibration: Colour transform that multiplies this RGB from the left (section 4.3); None:
             the identity.
-        optics: name of a `SkinOptics` preset.
-        nodes: nodes of the look-up table in f_mel and f_blood.
-        light: name of the light, kept in files.
-        camera: name of the camera, kept in files.
+        optics: Name of a `SkinOptics` preset.
+        nodes: Nodes of the look-up table in f_mel and f_blood.
+        light: Name of the light, kept in files.
+        camera: Name of the camera, kept in files.
 
     Source:
         Equation 11 of Alotaibi & Smith 2017.
@@ -76,7 +76,7 @@ class SkinColour(nn.Module):
         A fraction outside [0, 1] is clamped, and its gradient is zero. Offsets are added unchanged.
 
         Args:
-            features: volume fractions of blood and melanosomes, then the linear RGB offset.
+            features: Volume fractions of blood and melanosomes, then the linear RGB offset.
 
         Returns:
             Linear RGB.
@@ -89,8 +89,8 @@ class SkinColour(nn.Module):
         """Decode pigments alone, without an offset.
 
         Args:
-            f_mel: volume fraction of melanosomes; clamped to [0, 1].
-            f_blood: volume fraction of blood; clamped to [0, 1].
+            f_mel: Volume fraction of melanosomes; clamped to [0, 1].
+            f_blood: Volume fraction of blood; clamped to [0, 1].
 
         Returns:
             Linear RGB of skin.
@@ -124,9 +124,9 @@ class SkinColour(nn.Module):
         """Rebuild what `to_record` described.
 
         Raises:
-            KeyError: if an entry is missing.
-            TypeError: if an entry has another type.
-            ValueError: if an entry has another shape or value.
+            KeyError: If an entry is missing.
+            TypeError: If an entry has another type.
+            ValueError: If an entry has another shape or value.
         """
         matrix, calibration = (np.array(record[name], float) for name in ("matrix", "calibration"))
         if matrix.shape != (33, 3) or calibration.shape != (3, 3):

@@ -16,12 +16,12 @@ class PigmentEdit:
     """An edit of a map of volume fractions: f -> scale f + add, or one painted value.
 
     Args:
-        scale: factor from 0 to 10.
-        add: volume fraction that is added, in [-1, 1].
-        paint: volume fraction in [0, 1] that replaces the map; None: none does.
+        scale: Factor from 0 to 10.
+        add: Volume fraction that is added, in [-1, 1].
+        paint: Volume fraction in [0, 1] that replaces the map; None: none does.
 
     Raises:
-        InputError: if a value lies outside its range.
+        InputError: If a value lies outside its range.
 
     Source:
         Section 6 and Figure 6 of Alotaibi & Smith 2017.
@@ -67,16 +67,16 @@ def edit_texture(
     """Edit the pigments of a texture; its offset, which is not skin, stays the same.
 
     Args:
-        texture: maps to edit; they are not changed in place.
-        melanin: edit of f_mel.
-        hemoglobin: edit of f_blood.
-        mask: weight of the edit at each texel, in [0, 1]; None: 1 everywhere.
+        texture: Maps to edit; they are not changed in place.
+        melanin: Edit of f_mel.
+        hemoglobin: Edit of f_blood.
+        mask: Weight of the edit at each texel, in [0, 1]; None: 1 everywhere.
 
     Returns:
         The edited texture.
 
     Raises:
-        InputError: if the mask has another size than the maps.
+        InputError: If the mask has another size than the maps.
 
     Source:
         Section 6 and Figure 6 of Alotaibi & Smith 2017.

@@ -57,8 +57,8 @@ class HybridModel(AppearanceModel):
         to first order.
 
         Args:
-            stack: the subjects.
-            mask: texels that count; None: those that all subjects have.
+            stack: The subjects.
+            mask: Texels that count; None: those that all subjects have.
 
         Returns:
             One scale for each channel, for `fit`.
@@ -103,8 +103,8 @@ class HybridModel(AppearanceModel):
         """Compute the maps of coefficients beta (Equation 10 of Alotaibi & Smith 2017).
 
         Args:
-            beta: coefficients.
-            name: name of the texture.
+            beta: Coefficients.
+            name: Name of the texture.
 
         Returns:
             Maps with fractions clamped to [0, 1], 0 outside the mask.

@@ -68,14 +68,14 @@ class JointModel(nn.Module):
         """Fit joint components to the shapes and appearances of the same people.
 
         Args:
-            alphas: shape coefficients, one row for each person.
-            betas: appearance coefficients, such as `appearance.coefficients(stack)`.
-            deviations: standard deviations of alpha, the root of `ShapeModel.variances`.
+            alphas: Shape coefficients, one row for each person.
+            betas: Appearance coefficients, such as `appearance.coefficients(stack)`.
+            deviations: Standard deviations of alpha, the root of `ShapeModel.variances`.
             weight: w; None: shape and appearance have the same total variance.
-            components: number of joint components, less than that of people; None: all, up to 100.
+            components: Number of joint components, less than that of people; None: all, up to 100.
 
         Raises:
-            InputError: if rows or deviations do not match, a deviation or the weight is not
+            InputError: If rows or deviations do not match, a deviation or the weight is not
                 positive, shapes do not differ, or the people span fewer components.
         """
         if len(alphas) != len(betas):
@@ -126,8 +126,8 @@ class JointModel(nn.Module):
         """Sample the joint coefficients of random faces from N(0, variances).
 
         Args:
-            count: number of faces.
-            seed: the same seed gives the same faces, however many follow.
+            count: Number of faces.
+            seed: The same seed gives the same faces, however many follow.
         """
         return self.statistics.sample(count, seed)
 
@@ -135,7 +135,7 @@ class JointModel(nn.Module):
         """Write the model to a .npz file, all of it or nothing.
 
         Raises:
-            InputError: if the path does not end in .npz or cannot be written.
+            InputError: If the path does not end in .npz or cannot be written.
         """
         statistics = self.statistics
         header = {
@@ -152,7 +152,7 @@ class JointModel(nn.Module):
         """Read a model that `save` wrote; nothing is unpickled.
 
         Raises:
-            InputError: if the file is missing, damaged or of another kind.
+            InputError: If the file is missing, damaged or of another kind.
         """
         names = (*_model_arrays.STATISTICS, "deviations")
         header, arrays = _model_arrays.read_arrays(path, cls.__name__, names)

@@ -52,22 +52,22 @@ def measure_joint(
     out and has as many components as `appearance`.
 
     Args:
-        joint: the joint model.
-        appearance: the appearance model whose coefficients it was fitted to.
-        stack: the people that both were fitted to.
-        shape: the shape model of the people's shapes.
-        alphas: shape coefficients of the people.
-        counts: numbers of components to measure at; None: all, or 25 in geometric steps.
-        samples: number of random faces for specificity.
-        seed: seed of the random faces.
-        texels: number of texels at which the colours of a hybrid model are compared; None: all.
-        name: name of the model in the result.
+        joint: The joint model.
+        appearance: The appearance model whose coefficients it was fitted to.
+        stack: The people that both were fitted to.
+        shape: The shape model of the people's shapes.
+        alphas: Shape coefficients of the people.
+        counts: Numbers of components to measure at; None: all, or 25 in geometric steps.
+        samples: Number of random faces for specificity.
+        seed: Seed of the random faces.
+        texels: Number of texels at which the colours of a hybrid model are compared; None: all.
+        name: Name of the model in the result.
 
     Returns:
         The measures at each number of components, those of shape in mm.
 
     Raises:
-        InputError: if the shapes, the people and the models do not match, there are fewer than
+        InputError: If the shapes, the people and the models do not match, there are fewer than
             three people, or models that leave one out cannot have so many components.
     """
     grams = compute_grams(appearance.read_blocks(stack, appearance.mask))

@@ -17,11 +17,11 @@ def save_maps(path: Path, texture: SkinTexture, colour: SkinColour) -> None:
 
     Args:
         path: NAME_maps.npz.
-        texture: the maps.
-        colour: light, camera and calibration under which they were inverted.
+        texture: The maps.
+        colour: Light, camera and calibration under which they were inverted.
 
     Raises:
-        InputError: if the path does not end in .npz or cannot be written.
+        InputError: If the path does not end in .npz or cannot be written.
 
     Example:
         >>> import tempfile
@@ -45,7 +45,7 @@ def load_maps(path: Path) -> tuple[SkinTexture, SkinColour]:
         The maps, and the light, camera and calibration under which they were inverted.
 
     Raises:
-        InputError: if the file is missing, damaged or holds something else.
+        InputError: If the file is missing, damaged or holds something else.
     """
     header, arrays = _model_arrays.read_arrays(path, _KIND, _ARRAYS)
     try:

@@ -32,16 +32,16 @@ class Measures:
     """The quality of a model of appearance, by number of components.
 
     Args:
-        name: name of the model.
-        compactness: share of the variance of the model's own features that the first k components
+        name: Name of the model.
+        compactness: Share of the variance of the model's own features that the first k components
             explain (Figure 8(a)). The features of different models have different units.
-        colour_compactness: share of the subjects' variance in linear RGB that k components
+        colour_compactness: Share of the subjects' variance in linear RGB that k components
             reproduce, which compares models in one unit.
         generalisation: RMS error of each subject in linear RGB when it is reconstructed by a model
             of the others (Figure 8(b)).
         specificity: RMS distance in linear RGB of each random face from the nearest subject.
-        shape_generalisation: for a joint model, the error of shape in mm, RMS over the vertices.
-        shape_specificity: for a joint model, the distance of shape in mm, RMS over the vertices.
+        shape_generalisation: For a joint model, the error of shape in mm, RMS over the vertices.
+        shape_specificity: For a joint model, the distance of shape in mm, RMS over the vertices.
 
     Source:
         Section 6 and Figure 8 of Alotaibi & Smith 2017.
@@ -82,19 +82,19 @@ def measure(
     whole model. Random faces with fewer components are the same faces, cut short.
 
     Args:
-        model: the model.
-        stack: the subjects that it was fitted to.
-        counts: numbers of components to measure at; None: all, or 25 in geometric steps.
-        samples: number of random faces for specificity.
-        seed: seed of the random faces.
-        texels: number of texels at which the colours of a hybrid model are compared; None: all.
-        name: name of the model in the result; None: that of its class.
+        model: The model.
+        stack: The subjects that it was fitted to.
+        counts: Numbers of components to measure at; None: all, or 25 in geometric steps.
+        samples: Number of random faces for specificity.
+        seed: Seed of the random faces.
+        texels: Number of texels at which the colours of a hybrid model are compared; None: all.
+        name: Name of the model in the result; None: that of its class.
 
     Returns:
         The measures at each number of components.
 
     Raises:
-        InputError: if there are fewer than three subjects, or models that leave one out cannot have
+        InputError: If there are fewer than three subjects, or models that leave one out cannot have
             so many components.
 
     Source:

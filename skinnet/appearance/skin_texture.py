@@ -14,14 +14,14 @@ class SkinTexture:
     """One person's skin over a square texture space; row 0 is the top.
 
     Args:
-        f_mel: volume fraction of melanosomes, in [0, 1].
-        f_blood: volume fraction of blood, in [0, 1].
-        offset: linear RGB that the pigments do not explain.
-        mask: which texels are known; the values of the others are ignored.
-        name: stands in error messages.
+        f_mel: Volume fraction of melanosomes, in [0, 1].
+        f_blood: Volume fraction of blood, in [0, 1].
+        offset: Linear RGB that the pigments do not explain.
+        mask: Which texels are known; the values of the others are ignored.
+        name: Stands in error messages.
 
     Raises:
-        InputError: if a known texel is not finite or its fraction lies outside [0, 1].
+        InputError: If a known texel is not finite or its fraction lies outside [0, 1].
 
     Source:
         Section 4.4 and Equation 9 of Alotaibi & Smith 2017.
@@ -64,7 +64,7 @@ class SkinTexture:
         """Compute the linear RGB of the known texels (Equation 11 of Alotaibi & Smith 2017).
 
         Args:
-            colour: light, camera and calibration under which the albedo is seen.
+            colour: Light, camera and calibration under which the albedo is seen.
 
         Returns:
             Linear RGB, 0 where a texel is unknown.

@@ -46,10 +46,10 @@ class SubjectStack:
     [subjects, 5, n * n] in the order of `CHANNELS`, and masks.npy, bool [subjects, n * n].
 
     Args:
-        folder: holds the arrays.
-        names: names of the subjects.
-        size: texels along a side, n.
-        colour: light, camera and calibration under which all subjects were inverted.
+        folder: Holds the arrays.
+        names: Names of the subjects.
+        size: Texels along a side, n.
+        colour: Light, camera and calibration under which all subjects were inverted.
     """
 
     folder: Path
@@ -70,14 +70,14 @@ class SubjectStack:
         """Choose the texels that enough subjects have.
 
         Args:
-            share: part of the subjects that must have a texel, in (0, 1].
-            within: drawn mask; texels outside it are left out. None: no texel is.
+            share: Part of the subjects that must have a texel, in (0, 1].
+            within: Drawn mask; texels outside it are left out. None: no texel is.
 
         Returns:
             The `mask` and the counts that led to it.
 
         Raises:
-            InputError: if the share is outside (0, 1], the mask has another size, or no texel is
+            InputError: If the share is outside (0, 1], the mask has another size, or no texel is
                 left.
         """
         if not 0 < share <= 1:
@@ -102,14 +102,14 @@ class SubjectStack:
         """Prepare to read the features of the texels in a mask, block by block.
 
         Args:
-            mask: texels to read.
-            width: texels of the texture that are read at a time; None: as many as memory allows.
+            mask: Texels to read.
+            width: Texels of the texture that are read at a time; None: as many as memory allows.
 
         Returns:
             An iterable of blocks [subjects, 5, texels]; a missing value is the mean of the others.
 
         Raises:
-            InputError: if the mask has another size or holds a texel that no subject has.
+            InputError: If the mask has another size or holds a texel that no subject has.
         """
         self._check_size(mask)
         if lost := int((self._known[mask.ravel()] == 0).sum()):
@@ -174,7 +174,7 @@ def open_stack(folder: Path) -> SubjectStack:
     """Open a stack that `write_stack` has finished; see there for an example.
 
     Raises:
-        InputError: if the folder holds no stack, an unfinished or a damaged one.
+        InputError: If the folder holds no stack, an unfinished or a damaged one.
     """
     state = _read_state(folder)
     try:

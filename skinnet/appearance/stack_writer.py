@@ -39,17 +39,17 @@ def write_stack(
     If an earlier run was interrupted, this one resumes after the last subject that was written.
 
     Args:
-        folder: where the stack goes; made if needed.
-        subjects: for each name a function that makes the texture.
-        colour: light, camera and calibration under which all subjects were inverted.
-        inputs: any text that changes when a subject would change, such as a hash of files and
+        folder: Where the stack goes; made if needed.
+        subjects: For each name a function that makes the texture.
+        colour: Light, camera and calibration under which all subjects were inverted.
+        inputs: Any text that changes when a subject would change, such as a hash of files and
             settings. A stack with other inputs, names or colour is not written over.
 
     Returns:
         The finished stack.
 
     Raises:
-        InputError: if the folder holds another stack, there are fewer than two subjects, their
+        InputError: If the folder holds another stack, there are fewer than two subjects, their
             resolutions differ, or the disk is too full.
 
     Example:

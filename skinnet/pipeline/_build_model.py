@@ -29,14 +29,14 @@ class ModelSettings:
     """Settings of models of appearance (section 5 of Alotaibi & Smith 2017).
 
     Args:
-        components: principal components kept; null: all that the subjects span, up to 100.
-        mask: picture over the texture space, white where there is skin, such as the paper's
+        components: Principal components kept; null: all that the subjects span, up to 100.
+        mask: Picture over the texture space, white where there is skin, such as the paper's
             hand-drawn one; null: all texels that enough subjects have.
-        share: share of the subjects that must have a texel.
-        effect: scale hemoglobin, melanin and the offset by their effect on RGB, instead of giving
+        share: Share of the subjects that must have a texel.
+        effect: Scale hemoglobin, melanin and the offset by their effect on RGB, instead of giving
             each the same total variance. The paper does not say how it mixes them.
-        samples: number of random faces for specificity.
-        seed: seed of these faces.
+        samples: Number of random faces for specificity.
+        seed: Seed of these faces.
     """
 
     components: int | None = None

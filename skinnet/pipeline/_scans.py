@@ -30,12 +30,12 @@ class ScanOptions:
     """The shape model, and the files that belong to a scan.
 
     Args:
-        model: shape model: ICT-FaceKit (folder or .npz), Basel Face Model (.mat, .h5), .npz of
+        model: Shape model: ICT-FaceKit (folder or .npz), Basel Face Model (.mat, .h5), .npz of
             our own, a folder of registered meshes; by default the embedded procedural face.
         model_landmarks: .json of names and vertex numbers, for a model without landmarks.
-        landmarks: points of the scan (.ljson, .csv, .json, .pp); by default NAME.ljson, NAME.pp,
+        landmarks: Points of the scan (.ljson, .csv, .json, .pp); by default NAME.ljson, NAME.pp,
             NAME_landmarks.csv or .json beside it; without any, the face is detected from the front.
-        texture: the scan's picture, if the mesh does not name it.
+        texture: The scan's picture, if the mesh does not name it.
     """
 
     model: Path | None = None
@@ -62,7 +62,7 @@ def load_scan(path: Path, model: ShapeModel, options: ScanOptions, textured: boo
     """Read, check and repair a scan; its landmarks are those given, those beside it, or none.
 
     Raises:
-        InputError: if the scan cannot be repaired; names the file and the fault.
+        InputError: If the scan cannot be repaired; names the file and the fault.
     """
     mesh = read_mesh(path, options.texture)
     marks = options.landmarks or next(
@@ -86,7 +86,7 @@ def process_scans(
     """Process every scan and log the errors of bad ones; return 2 if any was bad, else 0.
 
     Raises:
-        InputError: if one file of landmarks or one texture is given for several scans, or two scans
+        InputError: If one file of landmarks or one texture is given for several scans, or two scans
             would write the same files.
     """
     for name, one in (("landmarks", options.landmarks), ("texture", options.texture)):

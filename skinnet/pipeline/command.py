@@ -14,14 +14,14 @@ def run_verb(verb: str, arguments: Sequence[str], description: str) -> int:
 
     Args:
         verb: fit-shape, maps, build-model, sample or edit-maps.
-        arguments: options of the verb, as on the command line.
-        description: describes the verb in its help.
+        arguments: Options of the verb, as on the command line.
+        description: Describes the verb in its help.
 
     Returns:
         0, or 2 if one of several scans was bad.
 
     Raises:
-        InputError: if an option or a file is bad.
+        InputError: If an option or a file is bad.
 
     Example:
         >>> run_verb("sample", ["--count=0"], "random faces from a model")

@@ -25,20 +25,20 @@ class RelightSettings:
     """Lights and camera of a rendered face.
 
     Args:
-        lamps: direction to each distant lamp (x to the face's left, y up, z forward).
-        strengths: radiance of a white surface that faces the lamp, for each lamp.
-        width: angular diameter of the lamps in degrees; 0 gives hard shadows.
-        above: radiance of the sky straight above.
-        below: radiance from straight below.
-        harmonics: nine spherical-harmonic coefficients of grey light that replaces the sky.
-        shadows: whether the face casts shadows on itself.
-        gloss: whether it has highlights.
-        yaw: angle in degrees by which the camera moves around to the face's left.
-        pitch: angle in degrees by which it moves up.
-        size: pixels along a side of the picture.
+        lamps: Direction to each distant lamp (x to the face's left, y up, z forward).
+        strengths: Radiance of a white surface that faces the lamp, for each lamp.
+        width: Angular diameter of the lamps in degrees; 0 gives hard shadows.
+        above: Radiance of the sky straight above.
+        below: Radiance from straight below.
+        harmonics: Nine spherical-harmonic coefficients of grey light that replaces the sky.
+        shadows: Whether the face casts shadows on itself.
+        gloss: Whether it has highlights.
+        yaw: Angle in degrees by which the camera moves around to the face's left.
+        pitch: Angle in degrees by which it moves up.
+        size: Pixels along a side of the picture.
 
     Raises:
-        InputError: if the strengths do not match the lamps, the harmonics are not nine, or the size
+        InputError: If the strengths do not match the lamps, the harmonics are not nine, or the size
             is out of range.
 
     Example:
@@ -87,9 +87,9 @@ class RelightSettings:
         """Render a face.
 
         Args:
-            mesh: the face, upright, with texture coordinates; it looks along +z. A `Scene` of it
+            mesh: The face, upright, with texture coordinates; it looks along +z. A `Scene` of it
                 is shared between several pictures.
-            albedo: linear RGB over the texture coordinates.
+            albedo: Linear RGB over the texture coordinates.
 
         Returns:
             The picture, uint8 sRGB.

@@ -17,7 +17,7 @@ class SentenceParser(ArgumentParser):
     one then names the new one.
 
     Raises:
-        InputError: instead of a message on standard error and the end of the process.
+        InputError: Instead of a message on standard error and the end of the process.
 
     Example:
         >>> from skinnet.pipeline import SentenceParser

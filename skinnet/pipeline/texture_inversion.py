@@ -16,10 +16,10 @@ def invert_texture(
     """Invert the colours of a texture to pigments and an offset.
 
     Args:
-        warped: linear RGB in the model's texture space, and the texels that are known.
-        exposure: factor by which its colours are multiplied first.
-        colours: calibrated light and camera.
-        name: name of the texture in error messages.
+        warped: Linear RGB in the model's texture space, and the texels that are known.
+        exposure: Factor by which its colours are multiplied first.
+        colours: Calibrated light and camera.
+        name: Name of the texture in error messages.
 
     Returns:
         The maps, and the share of known texels whose colour is not one of skin.

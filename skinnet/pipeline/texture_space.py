@@ -16,13 +16,13 @@ class WarpSettings:
     """Settings of the warp of a scan's texture into the model's texture space (section 4.2).
 
     Args:
-        size: texels along a side of the maps.
-        limit: distance in mm between model and scan above which a texel is not covered.
-        angle: angle in degrees between their normals above which it is not covered.
-        own_uv: use the model's own texture coordinates instead of a Tutte embedding of its mean.
+        size: Texels along a side of the maps.
+        limit: Distance in mm between model and scan above which a texel is not covered.
+        angle: Angle in degrees between their normals above which it is not covered.
+        own_uv: Use the model's own texture coordinates instead of a Tutte embedding of its mean.
 
     Raises:
-        InputError: if the size is out of range.
+        InputError: If the size is out of range.
 
     Source:
         Section 4.2 of Alotaibi & Smith 2017, who use 1024 texels.
@@ -48,14 +48,14 @@ def embed_model(model: ShapeModel, own_uv: bool = False) -> ShapeModel:
     """Give a shape model the texture space in which maps are made.
 
     Args:
-        model: the shape model.
-        own_uv: keep the model's own texture coordinates.
+        model: The shape model.
+        own_uv: Keep the model's own texture coordinates.
 
     Returns:
         The model with a Tutte embedding of its mean shape as texture coordinates, or with its own.
 
     Raises:
-        InputError: if the model's own texture coordinates are asked for and there are none.
+        InputError: If the model's own texture coordinates are asked for and there are none.
 
     Source:
         Section 4.2 of Alotaibi & Smith 2017.
