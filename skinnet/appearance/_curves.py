@@ -14,10 +14,7 @@ COUNTS = 25
 
 @dataclass(frozen=True, eq=False)
 class Curve:
-    """A measure at each number of components, for each subject or sample.
-
-    `unit` is that of `values`.
-    """
+    """A measure at each number of components, for each subject or sample, with its unit."""
 
     counts: Int[np.ndarray, "counts"]
     values: Float[np.ndarray, "counts cases"]
@@ -39,10 +36,10 @@ def space_counts(most: int) -> Int[np.ndarray, "counts"]:
 def choose_counts(
     counts: Int[np.ndarray, "counts"] | None, components: int, subjects: int
 ) -> Int[np.ndarray, "counts"]:
-    """Choose the numbers of components to measure at; those given are checked.
+    """Choose the numbers of components to measure at, or check those given.
 
     Raises:
-        InputError: If a model without one of the subjects cannot have them.
+        InputError: If a model without one of the subjects cannot have so many components.
     """
     if subjects < 3:
         raise InputError(f"Leaving one subject out needs three or more; the stack has {subjects}.")
@@ -51,7 +48,7 @@ def choose_counts(
     if not counts.size or counts.min() < 1 or counts.max() > most:
         raise InputError(
             f"Models of {subjects - 1} of the {subjects} subjects, with at most {components} "
-            f"components, have 1 to {most}; got counts {counts.tolist()}."
+            f"components, are measured at 1 to {most}; got counts {counts.tolist()}."
         )
     return counts
 

@@ -35,14 +35,14 @@ def compute_decoded_errors(
 def _center(
     colours: Float32[np.ndarray, "faces 3 texels"], mean: Float32[np.ndarray, "3 texels"]
 ) -> Float[np.ndarray, "faces values"]:
-    # A small distance is a difference of large squares; centring and float64 keep its digits.
+    # A small distance is a difference of large squares; centring and float64 keep it accurate.
     return np.asarray((colours - mean).reshape(len(colours), -1), np.float64)
 
 
 def subsample(
     mask: Bool[np.ndarray, "size size"], texels: int | None
 ) -> Bool[np.ndarray, "size size"]:
-    """Keep that many random texels of a mask, always the same; all of them if None or too many."""
+    """Keep that many random texels of a mask, or all if None; the choice is always the same."""
     inside = np.flatnonzero(mask)
     if texels is None or texels >= inside.size:
         return mask

@@ -17,7 +17,7 @@ from skinnet.appearance._principal import compute_axes
 MixtureErrors = Callable[
     [Float[np.ndarray, "mixtures subjects"]], Float[np.ndarray, "mixtures subjects"]
 ]
-"""Computes the RMS difference of each mixture, given by its weights, from each subject."""
+"""Computes the RMS difference between each mixture, given by its weights, and each subject."""
 
 
 class LeftOut(NamedTuple):
@@ -78,7 +78,7 @@ def reconstruct_subjects(
 def _sum_first(
     steps: Float[np.ndarray, "components subjects"], counts: Int[np.ndarray, "counts"]
 ) -> Float[np.ndarray, "counts subjects"]:
-    """Sum the first rows; a count beyond the last row stands for all rows."""
+    """Sum the first rows, as many as each count; a count above their number sums all rows."""
     sums = np.concatenate([np.zeros_like(steps[:1]), np.cumsum(steps, 0)])
     return np.asarray(sums[np.minimum(counts, len(steps))])
 
@@ -86,7 +86,7 @@ def _sum_first(
 def compute_errors(
     gram: Float[np.ndarray, "subjects subjects"], weights: Float[np.ndarray, "mixtures subjects"]
 ) -> Float[np.ndarray, "mixtures subjects"]:
-    """Compute the distance of each mixture from each subject from a centred Gram matrix."""
+    """Compute the distance between each mixture and each subject, given a centred Gram matrix."""
     own = np.einsum("mj,mj->m", weights @ gram, weights)
     squares = own[:, None] - 2 * weights @ gram + np.diag(gram)
     return np.asarray(np.sqrt(np.maximum(squares, 0)))

@@ -24,10 +24,10 @@ _Model = TypeVar("_Model", bound="AppearanceModel")
 class AppearanceModel(nn.Module, ABC):
     """A linear model of features, x(beta) = mean + scales * (beta P), that are decoded to RGB.
 
-    A call with coefficients beta [..., K] gives linear RGB [..., 3, n, n], 0 outside `mask`, and
-    gradients. Over people, beta_k has mean 0 and variance `statistics.variances[k]`. `statistics`
-    holds the numbers as arrays, which share memory with the buffers until the module is moved or
-    converted. `colour` is the light, camera and calibration under which the albedo is seen.
+    A call with coefficients beta [..., K] gives linear RGB [..., 3, n, n], 0 outside `mask`, and is
+    differentiable. Over people, beta_k has mean 0 and variance `statistics.variances[k]`.
+    `statistics` holds the numbers as arrays, which share memory with the buffers until the module
+    is moved or converted. `colour` is the light, camera and calibration of the albedo.
 
     Source:
         Equation 10 of Alotaibi & Smith 2017.
@@ -72,6 +72,9 @@ class AppearanceModel(nn.Module, ABC):
                 is the mean of the others.
             scales: What each channel of features is divided by before the analysis; None: the
                 default of the class.
+
+        Returns:
+            The model.
 
         Raises:
             InputError: If the subjects do not differ or span fewer components, the mask has another
@@ -140,6 +143,9 @@ class AppearanceModel(nn.Module, ABC):
     ) -> Float[Tensor, "*batch 3 size size"]:
         """Compute linear RGB from coefficients beta (Equations 10 and 11 of Alotaibi & Smith 2017).
 
+        Args:
+            beta: Coefficients.
+
         Returns:
             Linear RGB, 0 outside the mask.
         """
@@ -151,7 +157,14 @@ class AppearanceModel(nn.Module, ABC):
     def features(
         self, beta: Float[Tensor, "*batch components"]
     ) -> Float[Tensor, "*batch channels texels"]:
-        """Compute the features of the texels in the mask (Equation 10 of Alotaibi & Smith 2017)."""
+        """Compute the features of the texels in the mask (Equation 10 of Alotaibi & Smith 2017).
+
+        Args:
+            beta: Coefficients.
+
+        Returns:
+            Features in the unit of each channel.
+        """
         varied = (beta @ self.basis.flatten(1)).unflatten(-1, self.mean.shape)
         features: Tensor = self.mean + self.scales[:, None] * varied
         return features
@@ -163,7 +176,7 @@ class AppearanceModel(nn.Module, ABC):
             texture: The face, at the model's resolution.
 
         Returns:
-            beta.
+            Coefficients beta.
 
         Raises:
             InputError: If the texture has another size, or too few known texels.
@@ -180,6 +193,12 @@ class AppearanceModel(nn.Module, ABC):
         """Compute the coefficients beta of every subject of a stack, in one pass over it.
 
         A value that a subject lacks is the mean of the others, as in `fit`.
+
+        Args:
+            stack: The subjects.
+
+        Returns:
+            Coefficients, one row for each subject.
         """
         return self.statistics.project_blocks(self.read_blocks(stack, self.mask))
 
@@ -188,6 +207,9 @@ class AppearanceModel(nn.Module, ABC):
         self, beta: Float[np.ndarray, "components"]
     ) -> Float32[np.ndarray, "size size 3"]:
         """Compute the linear RGB albedo of coefficients (Equation 11 of Alotaibi & Smith 2017).
+
+        Args:
+            beta: Coefficients.
 
         Returns:
             Linear RGB, 0 outside the mask.
@@ -200,12 +222,18 @@ class AppearanceModel(nn.Module, ABC):
 
         Args:
             count: Number of faces.
-            seed: The same seed gives the same faces, however many follow.
+            seed: The same seed gives the same faces, whatever their number.
+
+        Returns:
+            Coefficients, one row for each face.
         """
         return self.statistics.sample(count, seed)
 
     def save(self, path: Path) -> None:
         """Write the model to a .npz file, all of it or nothing.
+
+        Args:
+            path: The file, with the suffix .npz.
 
         Raises:
             InputError: If the path does not end in .npz or cannot be written.
@@ -215,6 +243,12 @@ class AppearanceModel(nn.Module, ABC):
     @classmethod
     def load(cls: type[_Model], path: Path) -> _Model:
         """Read a model that `save` wrote; nothing is unpickled.
+
+        Args:
+            path: The file.
+
+        Returns:
+            The model.
 
         Raises:
             InputError: If the file is missing, damaged or of another kind.

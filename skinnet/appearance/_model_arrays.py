@@ -18,13 +18,13 @@ from skinnet.errors import InputError
 from skinnet.files import write_atomically
 
 MODEL_FORMAT = 1
-"""Version of the contents."""
+"""Version of the layout of these files."""
 
-READ_ERRORS = (
+ARCHIVE_ERRORS = (
     *(OSError, EOFError, KeyError, TypeError, ValueError, AttributeError),
     *(zipfile.BadZipFile, zlib.error, NotImplementedError, MemoryError),
 )
-"""Errors that NumPy, zipfile and JSON raise on damaged files."""
+"""Errors that NumPy, zipfile and JSON raise on damaged .npz files."""
 
 STATISTICS = ("mean", "basis", "variances", "scales")
 """Arrays of a `PrincipalComponents`."""
@@ -57,7 +57,7 @@ def load_model(
     mask = arrays.pop("mask")
     try:
         colour = SkinColour.from_record(header["colour"])
-    except READ_ERRORS as error:
+    except ARCHIVE_ERRORS as error:
         raise make_damage_error(path) from error
     statistics = build_statistics(path, header, arrays)
     if mask.dtype != bool or mask.shape != (len(mask),) * 2 or mask.sum() != len(statistics.mean.T):
@@ -79,12 +79,12 @@ def build_statistics(
             raise make_damage_error(path)
         total, subjects = float(header["total"]), int(header["subjects"])
         return PrincipalComponents(mean, basis, variances, scales, total, subjects)
-    except READ_ERRORS as error:
+    except ARCHIVE_ERRORS as error:
         raise make_damage_error(path) from error
 
 
 def write_arrays(path: Path, kind: str, header: dict[str, Any], arrays: dict[str, Any]) -> None:
-    """Write arrays under a header that says what they are."""
+    """Write arrays with a header that gives their kind and format."""
     if path.suffix != ".npz":
         raise InputError(f"{path} does not end in .npz; models and maps are .npz files.")
     header = {"kind": kind, "format": MODEL_FORMAT, "skinnet": __version__} | header
@@ -102,21 +102,21 @@ def read_arrays(
     if not path.is_file():
         raise InputError(f"There is no file {path}; check the path.")
     try:
-        # NumPy does not close a file that turns out to be no archive.
+        # NumPy does not close a file that is not an archive.
         with path.open("rb") as opened, np.load(opened, allow_pickle=False) as file:
             header = json.loads(str(file["header"]))
             _check_header(path, kind, header)
             return header, {name: file[name] for name in names}
     except InputError:
         raise
-    except READ_ERRORS as error:
+    except ARCHIVE_ERRORS as error:
         raise make_damage_error(path) from error
 
 
 def make_damage_error(path: Path) -> InputError:
-    """Make the error for a file that is not a whole model."""
+    """Make the error for a file that is damaged or of another kind."""
     return InputError(
-        f"{path} is not a whole model of skinnet's (damaged, cut short, or something else); make "
+        f"{path} is not a complete file of skinnet's (damaged, cut short, or another kind); make "
         "it again."
     )
 
@@ -128,4 +128,4 @@ def _check_header(path: Path, kind: str, header: dict[str, Any]) -> None:
             "make it again, or install the skinnet that made it."
         )
     if header["kind"] != kind:
-        raise InputError(f"{path} is a {header['kind']}, and a {kind} is wanted.")
+        raise InputError(f"{path} is a {header['kind']}, and a {kind} is needed.")

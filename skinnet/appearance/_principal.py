@@ -15,13 +15,13 @@ from skinnet.appearance._feature_blocks import ArrayBlocks, FeatureBlocks
 from skinnet.errors import InputError
 
 MAX_COMPONENTS = 100
-"""Largest number of components that are kept unless one is asked for."""
+"""Largest number of components that are kept if no number is given."""
 
 RANK = 1e-10
-"""Variance, relative to the first component's, below which a component is rounding."""
+"""Variance, relative to the first component's, below which a component is rounding error."""
 
 SAME = 1e-7
-"""Standard deviation of scaled features below which all subjects are the same but for rounding."""
+"""Standard deviation of scaled features below which subjects differ by rounding errors only."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -86,7 +86,7 @@ class PrincipalComponents:
 def sample_normal(
     count: int, components: int, seed: int
 ) -> Float[np.ndarray, "samples components"]:
-    """Sample standard normal numbers; a row is the same however many rows follow."""
+    """Sample standard normal numbers; a row does not depend on the number of rows."""
     return np.random.default_rng(seed).standard_normal((count, components))
 
 
@@ -113,7 +113,7 @@ class Axes(NamedTuple):
     """Principal axes as mixtures of subjects: sum_j vectors[j, k] x_j / sqrt(lengths[k]).
 
     `vectors` are unit eigenvectors of a centred Gram matrix and `lengths` its eigenvalues in
-    descending order, without those that are rounding.
+    descending order, without those that are rounding errors.
     """
 
     vectors: Float[np.ndarray, "subjects axes"]

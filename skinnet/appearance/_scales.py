@@ -7,7 +7,7 @@ from jaxtyping import Bool, Float
 from skinnet.appearance.stack import SubjectStack
 
 LEAST_SCALE = 1e-4
-"""Least scale: a channel that varies less is rounding, which must not be amplified."""
+"""Least scale; smaller variation of a channel is rounding error, which must not be amplified."""
 
 
 def compute_equal_variance(

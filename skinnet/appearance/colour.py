@@ -1,4 +1,4 @@
-"""The colour of skin under one light, as seen by one calibrated camera."""
+"""The colour of skin under one light, in a picture by one calibrated camera."""
 
 from collections.abc import Mapping
 from typing import Any
@@ -13,7 +13,7 @@ from skinnet.physics.lookup import SkinLookup
 from skinnet.physics.reflectance import SkinReflectance
 
 _NODES = (256, 256)
-"""Nodes of the look-up table in f_mel and f_blood, as many as inverse rendering has."""
+"""Nodes of the look-up table in f_mel and f_blood, as many as inverse rendering uses."""
 
 CHANNELS = ("f_blood", "f_mel", "offset_r", "offset_g", "offset_b")
 """Order of the features of a texel (Equation 9 of Alotaibi & Smith 2017)."""
@@ -104,12 +104,23 @@ class SkinColour(nn.Module):
     def decode(
         self, features: Float32[np.ndarray, "*batch 5 texels"]
     ) -> Float32[np.ndarray, "*batch 3 texels"]:
-        """Decode features that are arrays; see `forward`."""
+        """Decode features that are arrays; see `forward`.
+
+        Args:
+            features: Volume fractions of blood and melanosomes, then the linear RGB offset.
+
+        Returns:
+            Linear RGB.
+        """
         decoded: Float32[np.ndarray, "*batch 3 texels"] = self(torch.from_numpy(features)).numpy()
         return decoded
 
     def to_record(self) -> dict[str, Any]:
-        """Describe the light, camera and calibration in JSON's types, for `from_record`."""
+        """Describe the light, camera and calibration in JSON's types, for `from_record`.
+
+        Returns:
+            The record.
+        """
         return {
             "optics": self.optics,
             "light": self.light,
@@ -121,7 +132,13 @@ class SkinColour(nn.Module):
 
     @classmethod
     def from_record(cls, record: Mapping[str, Any]) -> "SkinColour":
-        """Rebuild what `to_record` described.
+        """Make a `SkinColour` from the record that `to_record` gave.
+
+        Args:
+            record: The record.
+
+        Returns:
+            The light, camera and calibration.
 
         Raises:
             KeyError: If an entry is missing.
@@ -137,7 +154,14 @@ class SkinColour(nn.Module):
 
     @staticmethod
     def share_outside(features: Float[np.ndarray, "*batch 5 texels"]) -> float:
-        """Compute the share of texels that have a fraction outside [0, 1]."""
+        """Compute the share of texels that have a fraction outside [0, 1].
+
+        Args:
+            features: Volume fractions of blood and melanosomes, then the linear RGB offset.
+
+        Returns:
+            The share, from 0 to 1.
+        """
         fractions = features[..., :2, :]
         return float(((fractions < 0) | (fractions > 1)).any(-2).mean())
 

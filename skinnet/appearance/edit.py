@@ -18,7 +18,7 @@ class PigmentEdit:
     Args:
         scale: Factor from 0 to 10.
         add: Volume fraction that is added, in [-1, 1].
-        paint: Volume fraction in [0, 1] that replaces the map; None: none does.
+        paint: Volume fraction in [0, 1] that replaces the map; None: the map is not replaced.
 
     Raises:
         InputError: If a value lies outside its range.
@@ -52,7 +52,14 @@ class PigmentEdit:
             )
 
     def __call__(self, fraction: Float32[np.ndarray, "*map"]) -> Float32[np.ndarray, "*map"]:
-        """Apply the edit to a map and clip the result to [0, 1]."""
+        """Apply the edit to a map and clip the result to [0, 1].
+
+        Args:
+            fraction: Map of volume fractions.
+
+        Returns:
+            The edited map.
+        """
         if self.paint is not None:
             return np.full_like(fraction, self.paint)
         return np.asarray((self.scale * fraction + self.add).clip(0, 1), np.float32)

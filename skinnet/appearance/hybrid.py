@@ -74,7 +74,7 @@ class HybridModel(AppearanceModel):
     def default_scales(
         cls, grams: Float[np.ndarray, "channels subjects subjects"], texels: int
     ) -> Float[np.ndarray, "channels"]:
-        """Give hemoglobin, melanin and the offset the same total variance."""
+        """Compute scales that give hemoglobin, melanin and the offset the same total variance."""
         return compute_equal_variance(grams, texels)
 
     def extract_features(self, texture: SkinTexture) -> Float32[np.ndarray, "channels texels"]:
@@ -117,6 +117,13 @@ class HybridModel(AppearanceModel):
 
     @torch.no_grad()
     def measure_clamping(self, betas: Float[np.ndarray, "samples components"]) -> float:
-        """Compute the share of texels in these faces that have a fraction outside [0, 1]."""
+        """Compute the share of texels in these faces that have a fraction outside [0, 1].
+
+        Args:
+            betas: Coefficients, one row for each face.
+
+        Returns:
+            The share, from 0 to 1.
+        """
         faces = (self.features(torch.from_numpy(beta).to(self.mean)) for beta in betas)
         return float(np.mean([SkinColour.share_outside(face.numpy(force=True)) for face in faces]))

@@ -22,7 +22,8 @@ class JointModel(nn.Module):
 
     alpha [S] are coefficients of a `ShapeModel`, and beta [K] are those of a `HybridModel` or
     `LinearModel`; both models stay unchanged. A call with joint coefficients gamma [..., J] gives
-    alpha [..., S] and beta [..., K], and gradients. The weight w trades shape for appearance.
+    alpha [..., S] and beta [..., K], and is differentiable. The larger the weight w, the more the
+    components describe shape instead of appearance.
 
     Source:
         Cootes et al. 2001, Active Appearance Models; section 7 of Alotaibi & Smith 2017 names the
@@ -74,6 +75,9 @@ class JointModel(nn.Module):
             weight: w; None: shape and appearance have the same total variance.
             components: Number of joint components, less than that of people; None: all, up to 100.
 
+        Returns:
+            The model.
+
         Raises:
             InputError: If rows or deviations do not match, a deviation or the weight is not
                 positive, shapes do not differ, or the people span fewer components.
@@ -103,14 +107,29 @@ class JointModel(nn.Module):
     def forward(
         self, gamma: Float[Tensor, "*batch components"]
     ) -> tuple[Float[Tensor, "*batch modes"], Float[Tensor, "*batch appearance"]]:
-        """Compute alpha and beta from joint coefficients gamma."""
+        """Compute alpha and beta from joint coefficients gamma.
+
+        Args:
+            gamma: Joint coefficients.
+
+        Returns:
+            Shape coefficients alpha and appearance coefficients beta.
+        """
         both = (self.mean + gamma @ self.basis) * self.units
         return both[..., : len(self.deviations)], both[..., len(self.deviations) :]
 
     def project(
         self, alpha: Float[np.ndarray, "modes"], beta: Float[np.ndarray, "appearance"]
     ) -> Float[np.ndarray, "components"]:
-        """Compute the joint coefficients gamma of one face by least squares."""
+        """Compute the joint coefficients gamma of one face by least squares.
+
+        Args:
+            alpha: Shape coefficients.
+            beta: Appearance coefficients.
+
+        Returns:
+            Joint coefficients.
+        """
         both = np.concatenate([self.weight * alpha / self.deviations, beta])
         return self.statistics.project(both[None], np.ones(both.size, bool))
 
@@ -118,7 +137,14 @@ class JointModel(nn.Module):
     def reconstruct(
         self, gamma: Float[np.ndarray, "components"]
     ) -> tuple[Float[np.ndarray, "modes"], Float[np.ndarray, "appearance"]]:
-        """Compute alpha and beta from joint coefficients that are arrays."""
+        """Compute alpha and beta from joint coefficients that are arrays.
+
+        Args:
+            gamma: Joint coefficients.
+
+        Returns:
+            Shape coefficients alpha and appearance coefficients beta.
+        """
         alpha, beta = self(torch.from_numpy(gamma).to(self.mean))
         return alpha.numpy(force=True), beta.numpy(force=True)
 
@@ -127,12 +153,18 @@ class JointModel(nn.Module):
 
         Args:
             count: Number of faces.
-            seed: The same seed gives the same faces, however many follow.
+            seed: The same seed gives the same faces, whatever their number.
+
+        Returns:
+            Joint coefficients, one row for each face.
         """
         return self.statistics.sample(count, seed)
 
     def save(self, path: Path) -> None:
         """Write the model to a .npz file, all of it or nothing.
+
+        Args:
+            path: The file, with the suffix .npz.
 
         Raises:
             InputError: If the path does not end in .npz or cannot be written.
@@ -151,6 +183,12 @@ class JointModel(nn.Module):
     def load(cls, path: Path) -> "JointModel":
         """Read a model that `save` wrote; nothing is unpickled.
 
+        Args:
+            path: The file.
+
+        Returns:
+            The model.
+
         Raises:
             InputError: If the file is missing, damaged or of another kind.
         """
@@ -162,7 +200,7 @@ class JointModel(nn.Module):
             raise _model_arrays.make_damage_error(path)
         try:
             return cls(statistics, deviations, float(header["weight"]))
-        except _model_arrays.READ_ERRORS as error:
+        except _model_arrays.ARCHIVE_ERRORS as error:
             raise _model_arrays.make_damage_error(path) from error
 
 

@@ -131,7 +131,7 @@ def _leave_out_jointly(
 
 
 def _truncate(axes: Axes) -> Float[np.ndarray, "subjects subjects"]:
-    """Compute the Gram matrix of appearance as a model with these axes keeps it."""
+    """Compute the Gram matrix of appearance, restricted to the axes of a model."""
     return np.asarray(axes.vectors * axes.lengths @ axes.vectors.T)
 
 

@@ -61,7 +61,7 @@ class LinearModel(AppearanceModel):
     def default_scales(
         cls, grams: Float[np.ndarray, "channels subjects subjects"], texels: int
     ) -> Float[np.ndarray, "channels"]:
-        """Leave every channel as it is."""
+        """Return ones: channels are not scaled."""
         return np.ones(len(grams))
 
     def extract_features(self, texture: SkinTexture) -> Float32[np.ndarray, "channels texels"]:

@@ -41,11 +41,14 @@ def save_maps(path: Path, texture: SkinTexture, colour: SkinColour) -> None:
 def load_maps(path: Path) -> tuple[SkinTexture, SkinColour]:
     """Read one person's maps that `save_maps` wrote; see there for an example.
 
+    Args:
+        path: NAME_maps.npz.
+
     Returns:
         The maps, and the light, camera and calibration under which they were inverted.
 
     Raises:
-        InputError: If the file is missing, damaged or holds something else.
+        InputError: If the file is missing, damaged or of another kind.
     """
     header, arrays = _model_arrays.read_arrays(path, _KIND, _ARRAYS)
     try:
@@ -57,5 +60,5 @@ def load_maps(path: Path) -> tuple[SkinTexture, SkinColour]:
         if shapes != [square, square, (*square, 3), square]:
             raise _model_arrays.make_damage_error(path)
         return SkinTexture(f_mel, f_blood, offset, mask.astype(bool), str(path)), colour
-    except _model_arrays.READ_ERRORS as error:
+    except _model_arrays.ARCHIVE_ERRORS as error:
         raise _model_arrays.make_damage_error(path) from error

@@ -56,7 +56,11 @@ class Measures:
     shape_specificity: Curve | None = None
 
     def summary(self) -> dict[str, Any]:
-        """Compute the mean of each measure by number of components, in JSON's types."""
+        """Compute the mean of each measure by number of components, in JSON's types.
+
+        Returns:
+            The name, and for each measure a dictionary from number of components to mean.
+        """
         curves = {name: curve for name, curve in vars(self).items() if isinstance(curve, Curve)}
         means = {
             name: dict(zip(curve.counts.tolist(), curve.mean.tolist(), strict=True))
@@ -79,7 +83,7 @@ def measure(
 
     No model is fitted again. The models that leave one subject out follow from inner products
     between subjects, which take one pass over the stack. They keep the mask and the scales of the
-    whole model. Random faces with fewer components are the same faces, cut short.
+    whole model. Random faces with fewer components are the same faces, truncated to these.
 
     Args:
         model: The model.

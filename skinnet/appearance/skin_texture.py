@@ -18,7 +18,7 @@ class SkinTexture:
         f_blood: Volume fraction of blood, in [0, 1].
         offset: Linear RGB that the pigments do not explain.
         mask: Which texels are known; the values of the others are ignored.
-        name: Stands in error messages.
+        name: What error messages call the texture.
 
     Raises:
         InputError: If a known texel is not finite or its fraction lies outside [0, 1].
@@ -64,7 +64,7 @@ class SkinTexture:
         """Compute the linear RGB of the known texels (Equation 11 of Alotaibi & Smith 2017).
 
         Args:
-            colour: Light, camera and calibration under which the albedo is seen.
+            colour: Light, camera and calibration of the albedo.
 
         Returns:
             Linear RGB, 0 where a texel is unknown.

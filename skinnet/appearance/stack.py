@@ -23,8 +23,8 @@ _FEATURES, _MASKS, _STATE = "features.npy", "masks.npy", "stack.json"
 class _Cover:
     """The texels that a model is built on.
 
-    `left_out` counts the texels of the drawn mask that too few subjects have, and `filled` the
-    missing values of single subjects inside `mask`, which take the mean of the others.
+    `left_out` is the number of texels of the drawn mask that too few subjects have. `filled` is the
+    number of values inside `mask` that a subject lacks; the mean of the others replaces them.
     """
 
     mask: Bool[np.ndarray, "size size"]
@@ -33,8 +33,9 @@ class _Cover:
 
     def __str__(self) -> str:
         return (
-            f"{self.mask.sum()} of {self.mask.size} texels are modelled, {self.left_out} that too "
-            f"few subjects have are left out, and {self.filled} missing values take the mean"
+            f"{self.mask.sum()} of {self.mask.size} texels are modelled, {self.left_out} are left "
+            f"out because too few subjects have them, and {self.filled} missing values are the "
+            "mean of the other subjects"
         )
 
 
@@ -46,7 +47,7 @@ class SubjectStack:
     [subjects, 5, n * n] in the order of `CHANNELS`, and masks.npy, bool [subjects, n * n].
 
     Args:
-        folder: Holds the arrays.
+        folder: The folder of the arrays.
         names: Names of the subjects.
         size: Texels along a side, n.
         colour: Light, camera and calibration under which all subjects were inverted.
@@ -58,7 +59,14 @@ class SubjectStack:
     colour: SkinColour
 
     def texture(self, index: int) -> SkinTexture:
-        """Read one subject."""
+        """Read one subject.
+
+        Args:
+            index: Number of the subject, from 0.
+
+        Returns:
+            The maps of the subject.
+        """
         square = (self.size, self.size)
         blood, mel, *offset = np.array(self.array(_FEATURES)[index]).reshape(-1, *square)
         mask = np.array(self.array(_MASKS)[index]).reshape(square)
@@ -70,8 +78,8 @@ class SubjectStack:
         """Choose the texels that enough subjects have.
 
         Args:
-            share: Part of the subjects that must have a texel, in (0, 1].
-            within: Drawn mask; texels outside it are left out. None: no texel is.
+            share: Share of the subjects that must have a texel, in (0, 1].
+            within: Drawn mask; texels outside it are left out. None: all texels.
 
         Returns:
             The `mask` and the counts that led to it.
@@ -115,7 +123,7 @@ class SubjectStack:
         if lost := int((self._known[mask.ravel()] == 0).sum()):
             raise InputError(
                 f"{lost} texels of the mask are known in no subject of {self.folder}; "
-                "take the mask of its cover()."
+                "use the mask that cover() gives."
             )
         return _StackBlocks(self, mask, width)
 
@@ -135,7 +143,14 @@ class SubjectStack:
         return known
 
     def array(self, name: str) -> NDArray[Any]:
-        """Map one of the arrays of the folder into memory."""
+        """Map one of the arrays of the folder into memory.
+
+        Args:
+            name: features.npy or masks.npy.
+
+        Returns:
+            The memory-mapped array.
+        """
         return np.asarray(np.load(self.folder / name, mmap_mode="r"))
 
 
@@ -173,6 +188,12 @@ def _fill(
 def open_stack(folder: Path) -> SubjectStack:
     """Open a stack that `write_stack` has finished; see there for an example.
 
+    Args:
+        folder: The folder of the stack.
+
+    Returns:
+        The stack.
+
     Raises:
         InputError: If the folder holds no stack, an unfinished or a damaged one.
     """
@@ -184,8 +205,8 @@ def open_stack(folder: Path) -> SubjectStack:
         raise InputError(f"{folder} holds no stack of subjects; make it again.") from error
     if done < len(names):
         raise InputError(
-            f"{folder} holds {done} of {len(names)} subjects; run the command that makes it again "
-            "to go on."
+            f"{folder} holds {done} of {len(names)} subjects; run the command that makes it again, "
+            "which resumes."
         )
     if not _is_whole(folder, len(names), size):
         raise InputError(f"The arrays in {folder} are damaged; delete the folder, make it again.")

@@ -1,4 +1,4 @@
-"""Writer of the subject stack: one subject at a time; an interrupted run is resumed."""
+"""Writer of the stack of subjects: one subject at a time; an interrupted run is resumed."""
 
 import hashlib
 import json
@@ -40,7 +40,7 @@ def write_stack(
 
     Args:
         folder: Where the stack goes; made if needed.
-        subjects: For each name a function that makes the texture.
+        subjects: For each name a function that makes or reads the texture.
         colour: Light, camera and calibration under which all subjects were inverted.
         inputs: Any text that changes when a subject would change, such as a hash of files and
             settings. A stack with other inputs, names or colour is not written over.
@@ -92,14 +92,14 @@ def write_stack(
 
 
 def _read_progress(folder: Path, digest: str) -> tuple[int, int]:
-    """Read how many subjects the folder holds, and their size; none if its arrays are lost."""
+    """Read the number of subjects in the folder and their size; 0 if its arrays are damaged."""
     if not (folder / _STATE).exists():
         return 0, 0
     state = _read_state(folder)
     if state.get("digest") != digest:
         raise InputError(
-            f"{folder} holds subjects, settings or colours other than these; choose another folder "
-            "or delete it."
+            f"{folder} holds a stack of other subjects, settings or colours; choose another folder "
+            "or delete this one."
         )
     whole = _is_whole(folder, len(state["names"]), state["size"])
     return (state["done"], state["size"]) if whole else (0, 0)

@@ -1,4 +1,4 @@
-"""The parts of a mesh file as trimesh reads them, each with its own vertices and material."""
+"""Parts of a mesh file as trimesh reads them, each with its own vertices and material."""
 
 import warnings
 from pathlib import Path
@@ -68,7 +68,7 @@ def concatenate(geometries: list[MeshGeometry]) -> MeshGeometry:
 
 
 def read_obj_positions(path: Path) -> Float[np.ndarray, "vertices 3"]:
-    """Read the `v` lines of an OBJ file in their order; trimesh sorts them by material and seam."""
+    """Read the `v` lines of an OBJ file in their order, which trimesh does not keep."""
     with path.open("rb") as file:
         lines = [line for line in file if line.startswith((b"v ", b"v\t"))]
     if not lines:
@@ -124,7 +124,7 @@ def _convert_part(path: Path, geometry: Any) -> MeshPart:
 
 def _texture(path: Path, material: Any) -> Texture | None:
     image = material.baseColorTexture if isinstance(material, PBRMaterial) else material.image
-    # trimesh gives a material without a picture one of four pixels, which has no file format.
+    # For a material without a picture trimesh makes one of four pixels, which has no file format.
     if not isinstance(image, Image.Image) or image.format is None:
         return None
     return decode_texture(image, f"The texture of {path}")

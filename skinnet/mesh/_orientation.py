@@ -1,4 +1,4 @@
-"""Orientation: which way the faces of a mesh look, and which of them disagree."""
+"""Orientation of a mesh: which side of its faces is the outside, and which are inconsistent."""
 
 from typing import NamedTuple
 
@@ -15,7 +15,7 @@ _FaceMask = Bool[np.ndarray, "triangles"]
 
 
 class AdjacentFaces(NamedTuple):
-    """Pairs of triangles with a common edge, and whether both run along it the same way."""
+    """Pairs of triangles with a common edge, and whether both run along it in one direction."""
 
     first: Int[np.ndarray, "pairs"]
     second: Int[np.ndarray, "pairs"]
@@ -23,7 +23,7 @@ class AdjacentFaces(NamedTuple):
 
 
 def pair_adjacent_faces(triangles: _Triangles) -> AdjacentFaces:
-    """Find the pairs of triangles with a common edge, of which no edge may have more than two."""
+    """Find the pairs of triangles with a common edge; an edge may have two triangles at most."""
     edges = half_edges(triangles)
     keys = edge_keys(edges, int(triangles.max()) + 1)
     order = np.argsort(keys, kind="stable")
@@ -40,13 +40,13 @@ def label_face_components(triangles: _Triangles) -> Int[np.ndarray, "triangles"]
 
 
 def area_vectors(vertices: _Vertices, triangles: _Triangles) -> Float[np.ndarray, "triangles 3"]:
-    """Normals of triangles, as long as their areas."""
+    """Compute the normals of triangles, each as long as the area of its triangle."""
     a, b, c = np.moveaxis(vertices[triangles].astype(np.float64), 1, 0)
     return np.cross(b - a, c - a) / 2
 
 
 def areas(vertices: _Vertices, triangles: _Triangles) -> Float[np.ndarray, "triangles"]:
-    """Areas of triangles."""
+    """Compute the areas of triangles."""
     return np.asarray(np.linalg.norm(area_vectors(vertices, triangles), axis=1))
 
 
@@ -58,13 +58,14 @@ def flip_triangles(triangles: _Triangles, flipped: _FaceMask) -> _Triangles:
 def find_inconsistent_faces(vertices: _Vertices, triangles: _Triangles) -> _FaceMask:
     """Find the triangles to flip so that neighbours run along their edge in opposite directions.
 
-    In a graph every triangle is two nodes, as it is and flipped, each linked to the neighbours that
-    agree with it. A component that can be oriented then falls into two; the one that keeps the
-    larger area as it is wins. Of a component that cannot be oriented, nothing is flipped.
+    Every triangle is two nodes of a graph: one for its present orientation, one for the flipped
+    one. Each node is linked to the nodes of its neighbours that are consistent with it. A component
+    of the mesh that can be oriented then gives two components of the graph, and the one that leaves
+    the larger area unchanged is chosen. Nothing is flipped in a component that cannot be oriented.
 
-    `trimesh.repair.fix_normals` takes 80 times as long on scans of which a third is flipped, and an
-    open surface that is inside out stays so (`repair_vs_trimesh_speedup` and `trimesh_inside_out`
-    of `benchmarks.texture`).
+    `trimesh.repair.fix_normals` takes 80 times as long on scans of which a third is flipped, and
+    leaves an open surface that is inside out as it is (`repair_vs_trimesh_speedup` and
+    `trimesh_inside_out` of `benchmarks.texture`).
     """
     count = len(triangles)
     first, second, same = pair_adjacent_faces(triangles)
@@ -79,7 +80,7 @@ def find_inconsistent_faces(vertices: _Vertices, triangles: _Triangles) -> _Face
 
 
 def is_inside_out(vertices: _Vertices, triangles: _Triangles) -> bool:
-    """Tell whether normals point to the middle on the whole, of a closed or an open surface."""
+    """Tell whether the normals of a closed or open surface point inwards on average."""
     vectors = area_vectors(vertices, triangles)
     centres = vertices[triangles].mean(1)
     middle = np.average(centres, 0, np.linalg.norm(vectors, axis=1))

@@ -1,4 +1,4 @@
-"""Seams: vertices and texture coordinates that files repeat, merged."""
+"""Merging of the vertices and texture coordinates that files repeat at seams."""
 
 import numpy as np
 from jaxtyping import Float, Int
@@ -24,7 +24,7 @@ def match_positions(
 ) -> Int[np.ndarray, "vertices"]:
     """Find the first of `listed` at the position of each vertex.
 
-    A vertex without one gets a number from `len(listed)` on.
+    If there is none, the index is `len(listed)` or more.
     """
     return np.asarray(weld(np.concatenate([listed, vertices]))[len(listed) :])
 

@@ -52,7 +52,7 @@ def pack_atlas(parts: list[MeshPart]) -> Atlas | None:
 
 
 def wrap_coordinates(uv: _Coordinates, triangles: _Triangles) -> tuple[_Coordinates, _Triangles]:
-    """Shift triangles outside [0, 1]^2 by whole tiles onto it, and clip what still sticks out."""
+    """Shift triangles outside [0, 1]^2 by whole tiles into it; clip coordinates still outside."""
     corners = uv[triangles]
     inside = ((corners >= 0) & (corners <= 1)).all((1, 2))[:, None, None]
     tiles = np.where(inside, 0, np.floor(corners.mean(1, keepdims=True)))

@@ -11,27 +11,27 @@ _Triangles = Int[np.ndarray, "triangles 3"]
 
 
 def half_edges(triangles: _Triangles) -> Int[np.ndarray, "halves 2"]:
-    """Directed edges of every triangle [3 T, 2]; row 3 i + k starts at corner k of triangle i."""
+    """List the directed edges of all triangles; row 3 i + k starts at corner k of triangle i."""
     return np.stack([triangles, np.roll(triangles, -1, 1)], -1).reshape(-1, 2)
 
 
 def edge_keys(
     edges: Int[np.ndarray, "edges 2"], vertex_count: int, directed: bool = False
 ) -> Int[np.ndarray, "edges"]:
-    """A number that identifies each edge, the same for both directions unless `directed`."""
+    """Compute a number that identifies each edge, the same in both directions unless `directed`."""
     ends = edges if directed else np.sort(edges, 1)
     return np.asarray(ends[:, 0].astype(np.int64) * vertex_count + ends[:, 1])
 
 
 def boundary(triangles: _Triangles) -> Bool[np.ndarray, "triangles 3"]:
-    """Whether edge k of each triangle, from corner k to k + 1, belongs to no other triangle."""
+    """Tell whether edge k of each triangle, from corner k to k + 1, is in no other triangle."""
     keys = edge_keys(half_edges(triangles), int(triangles.max(initial=-1)) + 1)
     _, place, count = np.unique(keys, return_inverse=True, return_counts=True)
     return np.asarray(count[place] == 1).reshape(-1, 3)
 
 
 def boundary_loops(triangles: _Triangles) -> list[Int[np.ndarray, "loop"]]:
-    """Vertices of each boundary loop, in the direction of the triangles' edges.
+    """List the vertices of each boundary loop, in the direction of the triangles' edges.
 
     Raises:
         InputError: If the mesh is not an oriented manifold: an edge has three triangles or two of
@@ -66,7 +66,7 @@ def label_components(triangles: _Triangles, vertex_count: int) -> Int[np.ndarray
 
 
 def weld(vertices: Float[np.ndarray, "vertices 3"]) -> Int[np.ndarray, "vertices"]:
-    """Find the first vertex at exactly the position of each, which may be itself."""
+    """Find, for each vertex, the first one at exactly the same position, perhaps itself."""
     order = np.lexsort(vertices.T)
     sorted_ = vertices[order]
     new = np.r_[True, (sorted_[1:] != sorted_[:-1]).any(1)][: len(vertices)]

@@ -18,7 +18,7 @@ class ClosestPoints(NamedTuple):
 
     Attributes:
         distance: In the mesh's unit; inf where nothing lies within the limit.
-        triangle: Index of the triangle that holds the point, -1 where nothing does.
+        triangle: Index of the triangle that contains the point, -1 where nothing lies within it.
         barycentric: Weights of that triangle's three corners, at least 0 and of sum 1.
     """
 
@@ -33,10 +33,10 @@ class TriangleTree:
     Each level halves the triangles of a box along its longest side. All queries descend together,
     each into the boxes nearer than its current best, which is at first its nearest vertex.
 
-    trimesh's `proximity.closest_point` needs rtree besides. Its `triangles.closest_point` of the 8
-    triangles with the nearest centroids is 3 to 6 times as fast, but not exact: on the scan of
-    James it is wrong by up to 0.2 % of the scan's size (`benchmarks.texture` prints both times, and
-    `closest_centroid_error`).
+    trimesh's `proximity.closest_point` also needs the package rtree. Its `triangles.closest_point`,
+    applied to the 8 triangles with the nearest centroids, is 3 to 6 times as fast, but not exact:
+    on a scan of a face it is wrong by up to 0.2 % of the scan's size (`benchmarks.texture` prints
+    both times, and `closest_centroid_error`).
 
     Args:
         vertices: Positions in any unit.
@@ -82,7 +82,7 @@ class TriangleTree:
 
     def _query(self, points: Float[np.ndarray, "queries 3"], limit: float) -> ClosestPoints:
         bound = np.minimum(self.nearest_vertex.query(points)[0], limit)
-        # Rounding must not put the box of the nearest vertex out of reach.
+        # The margin keeps the box of the nearest vertex in spite of rounding.
         reach = (bound * (1 + 1e-9)) ** 2 + 1e-300
         query, box = np.arange(len(points)), np.zeros(len(points), np.int64)
         for level in range(self.depth):
@@ -145,7 +145,7 @@ class TriangleTree:
 def _order_triangles(
     middles: Float[np.ndarray, "triangles 3"],
 ) -> tuple[Int[np.ndarray, "slots"], int]:
-    """Sort triangles so that every box of every level holds a run; also the number of levels.
+    """Sort triangles so that those of a box are consecutive at every level; count the levels.
 
     The last boxes are filled by repeating a triangle.
     """
@@ -164,7 +164,7 @@ def _order_triangles(
 def _bound_boxes(
     corners: Float[np.ndarray, "slots 3 3"], depth: int
 ) -> tuple[list[Float[np.ndarray, "_ 3"]], list[Float[np.ndarray, "_ 3"]]]:
-    """Lowest and highest corner of the 2, 4, 8, ... boxes of each level."""
+    """Compute the lowest and highest corner of the 2, 4, 8, ... boxes of each level."""
     low = [corners.min(1).reshape(-1, LEAF, 3).min(1)]
     high = [corners.max(1).reshape(-1, LEAF, 3).max(1)]
     for _ in range(depth - 1):
@@ -216,5 +216,5 @@ def _reduction(
     pb: Float[np.ndarray, "pairs"],
     pc: Float[np.ndarray, "pairs"],
 ) -> Float[np.ndarray, "pairs"]:
-    """Squared distance from p to a, minus that to the point (s, t)."""
+    """Compute the squared distance from p to a, minus that from p to the point (s, t)."""
     return np.asarray(2 * (s * pb + t * pc) - s * s * bb - 2 * s * t * bc - t * t * cc)

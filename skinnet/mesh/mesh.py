@@ -10,8 +10,8 @@ from jaxtyping import Float, Int, UInt8
 class Mesh:
     """A triangle mesh with, where known, its texture.
 
-    A vertex on a seam has one position and several texture coordinates, so triangles have indices
-    of their own into these.
+    A vertex on a seam has one position and several texture coordinates, so triangles index texture
+    coordinates separately.
 
     Args:
         vertices: Positions in any unit.

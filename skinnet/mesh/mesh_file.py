@@ -63,7 +63,7 @@ def write_mesh(path: Path, mesh: Mesh) -> None:
 
     Args:
         path: The file, with suffix .obj or .ply.
-        mesh: What is written.
+        mesh: The mesh.
 
     Raises:
         InputError: For another suffix, or if a file cannot be written.
@@ -123,7 +123,7 @@ def _format_obj(path: Path, mesh: Mesh) -> bytes:
 
 
 def _format_ply(path: Path, mesh: Mesh) -> bytes:
-    """Format as binary PLY, with the texture coordinates of face corners as MeshLab has them."""
+    """Format as binary PLY, with texture coordinates of face corners in MeshLab's layout."""
     face: list[tuple[str, str, tuple[int, ...]]]
     face = [("count", "u1", ()), ("corners", "<i4", (3,))]
     textured = mesh.texture is not None and mesh.uv is not None

@@ -12,7 +12,7 @@ def compute_vertex_normals(
 ) -> Float[np.ndarray, "vertices 3"]:
     """Compute the mean normal of the triangles around each vertex, weighted by their areas.
 
-    Vertices at the same position share their triangles, so that a seam does not show.
+    Vertices at the same position share their triangles, so normals are continuous across a seam.
 
     Args:
         vertices: Positions in any unit.

@@ -1,4 +1,4 @@
-"""Rasterisation: the triangle at each texel of a map, and the position in it."""
+"""Rasterisation: the triangle at each texel of a map, and the texel's position in it."""
 
 from typing import NamedTuple
 
@@ -39,7 +39,7 @@ def rasterise(corners: Float[np.ndarray, "triangles 3 2"], size: int) -> Raster:
     """Rasterise triangles in texture coordinates onto a map of `size` x `size` texels.
 
     The texel of row r and column c has its centre at u = (c + .5) / size, v = 1 - (r + .5) / size.
-    Where several triangles hold a centre (on an edge, or where they overlap), the first one counts.
+    Where several triangles contain a centre (on an edge, or where they overlap), the first counts.
 
     Args:
         corners: Texture coordinates of each triangle's corners, in either orientation. Triangles
@@ -127,7 +127,7 @@ def _locate(
     gradients: Float[np.ndarray, "triangles 3 2"],
     size: int,
 ) -> Float[np.ndarray, "texels 3"]:
-    """Barycentric coordinates of the centres of texels in their triangles."""
+    """Compute the barycentric coordinates of the centres of texels in their triangles."""
     row, column = np.divmod(texel, size)
     x, y = column - places[triangle, 0, 0], row - places[triangle, 0, 1]
     second = (gradients[triangle, 1, 0] * x + gradients[triangle, 1, 1] * y).clip(0, 1)

@@ -1,4 +1,4 @@
-"""Repair of meshes: what is safe is repaired with a note, anything else is refused."""
+"""Repair of meshes: safe repairs are made and noted, any other fault is an error."""
 
 from dataclasses import replace
 from typing import NamedTuple
@@ -19,7 +19,7 @@ from skinnet.mesh._topology import edge_keys, half_edges
 from skinnet.mesh.mesh import Mesh
 
 DAMAGED = 0.1
-"""Largest share of vertices that are not finite, or of faces without an area, to be removed."""
+"""Largest share of vertices that are not finite, or of faces without an area, in a usable mesh."""
 
 KEPT = 0.1
 """Components with at least this share of the area are kept."""
@@ -28,9 +28,11 @@ PLACEHOLDER = 8
 """A texture with fewer texels than this on a side is a placeholder."""
 
 OVERHANG = 0.01
-"""Texture coordinates may leave their tile by this much."""
+"""Largest distance by which texture coordinates may leave their tile; they are clipped."""
 
 UNITS = {"metres": 1000.0, "centimetres": 10.0, "millimetres": 1.0, "micrometres": 0.001}
+"""Units that a mesh may have, and their lengths in millimetres."""
+
 FACE = (100.0, 600.0)
 """Longest side of the bounding box of a face, or of a head with shoulders, in millimetres."""
 
@@ -64,9 +66,9 @@ class LengthUnit(NamedTuple):
 def repair_mesh(mesh: Mesh, need_texture: bool = False) -> RepairedMesh:
     """Repair a mesh into an oriented manifold of one or few components.
 
-    Removed are vertices that are not finite, faces without an area, repeated faces, the smallest
-    faces at edges with more than two, and components below `KEPT` of the area. Faces are flipped so
-    that neighbours agree and the outside looks away from the middle. With `need_texture`, texture
+    Vertices that are not finite, faces without an area, repeated faces, the smallest faces at edges
+    with more than two, and components below `KEPT` of the area are removed. Faces are flipped so
+    that neighbours are consistent and normals point outwards. With `need_texture`, texture
     coordinates outside [0, 1] are wrapped.
 
     Args:
@@ -110,7 +112,7 @@ def repair_mesh(mesh: Mesh, need_texture: bool = False) -> RepairedMesh:
 def guess_length_unit(
     vertices: Float[np.ndarray, "vertices 3"], name: str = "The mesh"
 ) -> LengthUnit:
-    """Guess in which of `UNITS` a mesh has the size of a face or a head, `FACE`.
+    """Guess the unit of a mesh: that of `UNITS` in which it is as large as a face (`FACE`).
 
     Args:
         vertices: Positions of a face or head.
@@ -137,8 +139,8 @@ def guess_length_unit(
             )
     raise InputError(
         f"{name} is {size:.3g} units long, which is no face or head of {FACE[0]:.0f} to "
-        f"{FACE[1]:.0f} mm in {', '.join(UNITS)}; cut the face out, or say how many millimetres "
-        "a unit is."
+        f"{FACE[1]:.0f} mm in {', '.join(UNITS)}; cut the face out, or give the length of a unit "
+        "in millimetres."
     )
 
 
@@ -190,7 +192,7 @@ def _remove_repeated_faces(mesh: Mesh) -> RepairedMesh:
 
 
 def _remove_non_manifold_faces(mesh: Mesh) -> RepairedMesh:
-    """Keep the two largest faces at every edge; what sticks to a surface is small."""
+    """Keep the two largest faces at every edge; faces that do not belong there are small."""
     area = areas(mesh.vertices, mesh.triangles)
     keys = edge_keys(half_edges(mesh.triangles), len(mesh.vertices))
     order = np.lexsort([-np.repeat(area, 3), keys])

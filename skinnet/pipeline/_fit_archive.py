@@ -6,7 +6,7 @@ from pathlib import Path
 
 import numpy as np
 
-from skinnet.appearance._model_arrays import READ_ERRORS
+from skinnet.appearance._model_arrays import ARCHIVE_ERRORS
 from skinnet.errors import InputError
 from skinnet.files import write_atomically
 from skinnet.shape.fit_settings import StageRecord
@@ -43,5 +43,5 @@ def load_fit(path: Path) -> Registration:
             return Registration(
                 pose, **arrays, millimetres=float(file["millimetres"]), record=record
             )
-    except READ_ERRORS as error:
+    except ARCHIVE_ERRORS as error:
         raise InputError(f"{path} is no fitted shape; make it with skinnet fit-shape.") from error

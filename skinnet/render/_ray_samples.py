@@ -1,4 +1,4 @@
-"""Directions that rays are cast in to sample a light or the sky."""
+"""Directions of the rays that sample a light or the sky."""
 
 import numpy as np
 from jaxtyping import Float

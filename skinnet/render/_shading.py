@@ -1,4 +1,4 @@
-"""Shading: the light that a surface sends to the viewer."""
+"""Shading: the light that a surface reflects to the viewer."""
 
 from collections.abc import Sequence
 from typing import NamedTuple
@@ -13,13 +13,13 @@ from skinnet.render.lights import Light
 from skinnet.render.visibility import GeometryBuffers
 
 EXPONENT = 20.0
-"""Exponent of the highlight; skin is rough."""
+"""Exponent of the highlight; a low one, because skin is rough."""
 
 _Albedo = Shaped[np.ndarray, "rows columns 3"] | Float[np.ndarray, "3"]
 
 
 class ShadedImage(NamedTuple):
-    """Linear light on black, and the share of each pixel that the mesh covers."""
+    """Linear RGB on a black background, and the share of each pixel that the mesh covers."""
 
     image: Float[np.ndarray, "height width 3"]
     alpha: Float[np.ndarray, "height width"]

@@ -5,9 +5,9 @@ from jaxtyping import Float
 
 
 def view_axes(yaw: float, pitch: float = 0.0) -> Float[np.ndarray, "3 3"]:
-    """Right, up and backward axes of a view of the origin from an angle in degrees.
+    """Compute the right, up and backward axes of a view of the origin.
 
-    `yaw` goes around to the face's left, `pitch` up.
+    `yaw` and `pitch` are angles in degrees by which the viewpoint moves to the face's left and up.
     """
     a, b = np.deg2rad(yaw), np.deg2rad(pitch)
     back = np.array([np.sin(a) * np.cos(b), np.sin(b), np.cos(a) * np.cos(b)])

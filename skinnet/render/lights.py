@@ -1,4 +1,4 @@
-"""Lights, and the irradiance that they give a surface.
+"""Lights, and the irradiance of a surface under them.
 
 Irradiance is divided by pi: it is then the radiance of a white diffuse surface, and the radiance of
 any diffuse surface is its albedo times that.
@@ -17,12 +17,12 @@ from skinnet.render._harmonics import COSINE_LOBE, evaluate_harmonics
 from skinnet.render.visibility import GeometryBuffers
 
 _Illumination = tuple[Float[np.ndarray, "hits 3"], Float[np.ndarray, "3"] | None]
-"""Irradiance over pi at each hit, and the unit vector to the light if it comes from one."""
+"""Irradiance over pi at each hit, and the unit vector to the light; None without a direction."""
 
 
 @runtime_checkable
 class Light(Protocol):
-    """A light that can be given to `render`."""
+    """What `render` needs of a light."""
 
     def illuminate(self, buffers: GeometryBuffers, shadows: bool) -> _Illumination:
         """Compute the irradiance over pi at each hit.
@@ -45,7 +45,7 @@ class DirectionalLight:
     Args:
         direction: Vector to the light, of any length.
         colour: Radiance of a white diffuse surface that faces the light, one number or linear sRGB.
-        angle: Degrees that the light is across; above 0 shadows are soft.
+        angle: Angular diameter of the light in degrees; above 0 shadows are soft.
         rays: Shadow rays per pixel for a soft shadow.
 
     Example:
@@ -76,12 +76,13 @@ class DirectionalLight:
             Irradiance over pi, linear sRGB, and the unit vector to the light.
 
         Raises:
-            InputError: For a direction without length, or that is not finite.
+            InputError: For a direction of length 0, or one that is not finite.
         """
         direction = np.asarray(self.direction, np.float64)
         if not (np.isfinite(direction).all() and direction.any()):
             raise InputError(
-                f"The direction of a light is a vector with a length; got {self.direction}."
+                f"The direction of a light is a finite vector of any length above 0; got "
+                f"{self.direction}."
             )
         direction = normalise(direction)
         cosine = (buffers.normal @ direction).clip(0)
@@ -100,8 +101,8 @@ class SphericalHarmonics:
     shadows; instead it is multiplied by the sky visibility.
 
     Args:
-        coefficients: Nine, grey [9] or linear sRGB [9, 3]. A constant radiance L has the first
-            coefficient sqrt(4 pi) L and eight zeros.
+        coefficients: Nine coefficients, grey [9] or linear sRGB [9, 3]. For a constant radiance L
+            the first is sqrt(4 pi) L and the others are 0.
 
     Source:
         Ramamoorthi & Hanrahan 2001, "An efficient representation for irradiance environment maps".
@@ -157,7 +158,7 @@ class SphericalHarmonics:
         return cls(coefficients)
 
     def irradiance(self, normals: Float[np.ndarray, "points 3"]) -> Float[np.ndarray, "points 3"]:
-        """Compute the irradiance of surfaces in the open.
+        """Compute the irradiance of surfaces that nothing occludes.
 
         Args:
             normals: Unit normals of the surfaces.

@@ -28,7 +28,7 @@ class Scene:
     Embree works in single precision, so positions are centred and scaled before they reach it.
 
     Args:
-        mesh: The surface, seen from either side.
+        mesh: The surface; rays hit it from either side.
 
     Attributes:
         mesh: The surface.
@@ -50,7 +50,9 @@ class Scene:
 
     def __init__(self, mesh: Mesh) -> None:
         if len(mesh.triangles) == 0 or not np.isfinite(mesh.vertices).all():
-            raise InputError(f"{mesh.name} has no triangles, or vertices that are not finite.")
+            raise InputError(
+                f"{mesh.name} has no triangles, or vertices that are not finite; repair it first."
+            )
         self.mesh = mesh
         self.normals = compute_vertex_normals(mesh.vertices, mesh.triangles)
         low, high = mesh.vertices.min(0), mesh.vertices.max(0)
@@ -103,7 +105,7 @@ class Scene:
     def inner_sky_visibility(self) -> Float[np.ndarray, "vertices"]:
         """Share of the cosine-weighted sky visible from the inside of each vertex.
 
-        The inside of a head shows through holes at its eyes, and is dark.
+        The inside of a head is visible through holes at its eyes, and it is dark there.
         """
         return self._sky_visibility(-self.normals)
 
@@ -137,7 +139,7 @@ def _intersect_triangles(
     origins: Float[np.ndarray, "rays 3"],
     directions: Float[np.ndarray, "rays 3"],
 ) -> Float[np.ndarray, "rays 3"]:
-    """Barycentric coordinates of hits in double precision (Moeller & Trumbore 1997)."""
+    """Compute barycentric coordinates of hits in double precision (Moeller & Trumbore 1997)."""
     a, b, c = np.moveaxis(corners, 1, 0)
     ab, ac, away = b - a, c - a, origins - a
     p, q = np.cross(directions, ac), np.cross(away, ab)

@@ -97,7 +97,7 @@ class PerspectiveView:
 
 @dataclass(frozen=True)
 class OrthographicView:
-    """A view along parallel rays. What lies behind the plane of the picture is not visible.
+    """A view along parallel rays. Surfaces behind the plane of the picture are not visible.
 
     Args:
         size: Height and width of the picture in pixels.
@@ -153,15 +153,15 @@ def frame_face(
     field_of_view: float = 20.0,
     fill: float = 0.92,
 ) -> PerspectiveView:
-    """Place a view before a face, as near as keeps all vertices within `fill` of the picture.
+    """Place a view in front of a face, so near that the face fills a share `fill` of the picture.
 
     Args:
         vertices: Positions, x to the face's left, y up and z forward.
         size: Height and width of the picture in pixels.
-        yaw: Degrees around to the face's left; 0 is straight ahead (+z).
-        pitch: Degrees up.
-        field_of_view: Degrees over the height of the picture.
-        fill: Share of the picture's width and height that the face may take.
+        yaw: Angle in degrees by which the eye moves around to the face's left; at 0 it is on +z.
+        pitch: Angle in degrees by which the eye moves up.
+        field_of_view: Vertical field of view in degrees.
+        fill: Share of the picture's width or height that the face fills.
 
     Returns:
         The view.
@@ -194,7 +194,7 @@ def frame_face(
 def _grid(
     size: tuple[int, int], samples: int
 ) -> tuple[Float[np.ndarray, "rays"], Float[np.ndarray, "rays"]]:
-    """Positions of the samples in pixels from the middle, x to the right and y up."""
+    """Compute the positions of samples in pixels from the middle, x to the right and y up."""
     height, width = size
     x = (np.arange(width * samples) + 0.5) / samples - width / 2
     y = height / 2 - (np.arange(height * samples) + 0.5) / samples
@@ -204,5 +204,5 @@ def _grid(
 def _pixels(
     size: tuple[int, int], local: Float[np.ndarray, "points 2"]
 ) -> Float[np.ndarray, "points 2"]:
-    """Column and row of positions in pixels from the middle."""
+    """Convert positions in pixels from the middle to columns and rows."""
     return local * [1, -1] + np.array([size[1], size[0]]) / 2

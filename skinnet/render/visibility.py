@@ -6,6 +6,7 @@ from functools import cached_property
 import numpy as np
 from jaxtyping import Bool, Float, Int
 
+from skinnet.mesh._barycentric import interpolate
 from skinnet.mesh._vectors import normalise
 from skinnet.mesh.mesh import Mesh
 from skinnet.render._ray_samples import build_tangents, rotate, sample_disc
@@ -26,7 +27,7 @@ class GeometryBuffers:
         position: Position in the mesh's unit.
         normal: Interpolated unit normal, facing the viewer.
         face_normal: The triangle's unit normal, facing the viewer.
-        side: 1 where the viewer sees the outside, -1 where both normals were reversed.
+        side: 1 where the outside is visible, -1 where the inside is and both normals are reversed.
         view_direction: Unit vector to the viewer.
         uv: Texture coordinates; None for a mesh without them.
     """
@@ -47,9 +48,9 @@ class GeometryBuffers:
     def shadow_origin(self) -> Float[np.ndarray, "hits 3"]:
         """Start of the shadow rays, a little above the smooth surface that the normals describe.
 
-        Rays that start on the flat triangle hit its neighbours at grazing angles. Projected onto
-        the tangent planes of the corners, the start lies above them (Hanika 2021, "Hacking the
-        shadow terminator").
+        Rays that start on the flat triangle hit its neighbours at grazing angles. So the start is
+        moved up to the tangent planes of the triangle's corners, with barycentric weights (Hanika
+        2021, "Hacking the shadow terminator").
         """
         corners = self.scene.mesh.triangles[self.triangle]
         raised = self.position.copy()
@@ -63,11 +64,11 @@ class GeometryBuffers:
     def light_visibility(
         self, direction: Float[np.ndarray, "3"], angle: float = 0.0, rays: int = 16
     ) -> Float[np.ndarray, "hits"]:
-        """Share of a distant light that is visible from each sample.
+        """Compute the share of a distant light that is visible from each sample.
 
         Args:
             direction: Unit vector to the middle of the light.
-            angle: Degrees that the light is across.
+            angle: Angular diameter of the light in degrees.
             rays: Rays per pixel, spread over the light and rotated at random for each sample.
 
         Returns:
@@ -77,10 +78,10 @@ class GeometryBuffers:
         start = self.scene.to_local(self.shadow_origin[facing] + self._offset(direction, facing))
         aims = sample_disc(-(-rays // self.samples**2)) if angle else np.zeros((1, 2))
         right, up = build_tangents(direction[None])
-        turn = 2 * np.pi * np.random.default_rng(0).random((len(facing) if angle else 1, 1))
+        rotation = 2 * np.pi * np.random.default_rng(0).random((len(facing) if angle else 1, 1))
         blocked = np.zeros(len(facing))
         for x, y in np.tan(np.deg2rad(angle) / 2) * aims:
-            along, across = rotate(x, y, turn)
+            along, across = rotate(x, y, rotation)
             blocked += self.scene.occluded(start, direction + along * right + across * up)
         visibility = np.zeros(len(self.position))
         visibility[facing] = 1 - blocked / len(aims)
@@ -89,10 +90,10 @@ class GeometryBuffers:
     def _offset(
         self, direction: Float[np.ndarray, "3"], chosen: Int[np.ndarray, "chosen"]
     ) -> Float[np.ndarray, "chosen 3"]:
-        """Move a ray one edge length towards a light behind its triangle.
+        """Compute offsets of one edge length towards the light where it is behind the triangle.
 
-        The smooth normal of such a triangle faces the light, its own does not; without the offset
-        a coarse mesh shows dark triangles.
+        There the interpolated normal faces the light and that of the triangle does not. Without
+        the offset such triangles of a coarse mesh are dark.
         """
         behind = np.flatnonzero(self.face_normal[chosen] @ direction < 0)
         triangles = self.scene.mesh.triangles[self.triangle[chosen[behind]]]
@@ -103,10 +104,11 @@ class GeometryBuffers:
         return offset
 
     def sky_visibility(self) -> Float[np.ndarray, "hits"]:
-        """Share of the cosine-weighted sky that is visible from each sample.
+        """Compute the share of the cosine-weighted sky that is visible from each sample.
 
         Returns:
-            From 0 to 1, interpolated between vertices (`Scene.outer_sky_visibility`).
+            From 0 to 1, interpolated between vertices (`Scene.outer_sky_visibility`, or
+            `inner_sky_visibility` where the inside is visible).
         """
         corners = self.scene.mesh.triangles[self.triangle]
         visibility = (self.scene.outer_sky_visibility[corners] * self.barycentric).sum(1)
@@ -155,23 +157,17 @@ def trace_geometry(mesh: Mesh | Scene, view: View, samples: int = 1) -> Geometry
     side = np.where(np.einsum("px,px->p", face_normal, towards) < 0, -1.0, 1.0)[:, None]
     uv = None
     if mesh.uv is not None and mesh.uv_triangles is not None:
-        uv = _interpolate(barycentric, mesh.uv[mesh.uv_triangles[triangle]])
+        uv = interpolate(barycentric, mesh.uv[mesh.uv_triangles[triangle]])
     return GeometryBuffers(
         scene,
         samples,
         hit.reshape(view.size[0] * samples, -1),
         triangle,
         barycentric,
-        _interpolate(barycentric, mesh.vertices[corners]),
-        side * normalise(_interpolate(barycentric, scene.normals[corners])),
+        interpolate(barycentric, mesh.vertices[corners]),
+        side * normalise(interpolate(barycentric, scene.normals[corners])),
         side * face_normal,
         side,
         towards,
         uv,
     )
-
-
-def _interpolate(
-    barycentric: Float[np.ndarray, "points 3"], corners: Float[np.ndarray, "points 3 k"]
-) -> Float[np.ndarray, "points k"]:
-    return np.asarray(np.einsum("pk,pkx->px", barycentric, corners))

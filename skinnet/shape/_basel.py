@@ -66,8 +66,8 @@ def load_basel_2017(path: Path) -> ShapeModel:
     """Load an .h5 of the models of 2017 or 2019 (Gerig et al. 2018): the neutral shape, in mm.
 
     The layout is Statismo's: `shape/model/mean` [3N], `pcaBasis` [3N, S], `pcaVariance` [S] and
-    `shape/representer/cells` [3, T]. `metadata/landmarks/json` names points. Of these, 17 of the 20
-    landmarks of a fit become the nearest vertices of the mean; the bridge of the nose and the outer
+    `shape/representer/cells` [3, T]. `metadata/landmarks/json` names points, which give 17 of the
+    20 landmarks of a fit, at the nearest vertices of the mean. The bridge of the nose and the outer
     ends of the brows are missing. Raises `InputError` for another layout.
     """
     try:

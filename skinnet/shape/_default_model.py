@@ -18,7 +18,7 @@ HEIGHT = 180.0
 """Height of the mean face in millimetres."""
 
 SAMPLES = 400
-"""Sampled faces from which the modes are computed, in pairs with opposite identity."""
+"""Sampled faces from which the modes are computed, in pairs with opposite identity numbers."""
 
 MODES = 43
 """Modes that are kept, one for each identity number; they hold 99.99 % of the variance."""
@@ -49,7 +49,7 @@ def build_default_model() -> ShapeModel:
 
 
 def build_procedural_model(rows: int = 115, columns: int = 153) -> ShapeModel:
-    """Build the procedural face on a grid over its chart, about a third of it inside.
+    """Build the procedural face on a grid over its chart, a third of which the face covers.
 
     The modes are principal components of `SAMPLES` faces with seeded standard normal numbers.
     Vertices, triangles and modes are their own mirror images under x -> -x. The texture space is
@@ -132,8 +132,8 @@ class _RadialModes(NamedTuple):
 def _compute_modes(number: Int[np.ndarray, "rows columns"]) -> _RadialModes:
     """Compute principal components of the radius, which is all that differs between samples.
 
-    They are computed on one half, whose vertices count twice except for the middle column's, and
-    used for both, so that these agree to the last bit.
+    They are computed on one half and mirrored to the other, so that both agree to the last bit.
+    Vertices of the half count twice, except those of the middle column.
     """
     middle = number.shape[1] // 2
     half = number[:, middle:] >= 0

@@ -37,7 +37,7 @@ def name_ibug_point(number: int) -> str:
 
 
 def resolve_name(name: str) -> str:
-    """Turn a number of iBUG's into the point's name; other names stay as they are."""
+    """Convert a number of iBUG's to the point's name; other names stay unchanged."""
     number = name.strip().removeprefix("ibug_")
     if not number.isdecimal():
         return name.strip()

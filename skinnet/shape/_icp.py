@@ -13,7 +13,7 @@ from skinnet.shape.model import ShapeModel
 from skinnet.shape.similarity import Similarity
 
 MAX_MEDIAN_DISTANCE = 25.0
-"""Largest median distance in mm from the model's vertices to the scan at which a fit goes on."""
+"""Largest median distance in mm from the model's vertices to the scan; beyond it a fit stops."""
 
 INDEPENDENT_POINTS = 1000
 """Matched points whose errors count as independent; errors of neighbours are correlated."""
@@ -25,8 +25,8 @@ MIN_CHANGE = 0.01
 class IcpStage:
     """Trimmed, non-rigid ICP of section 4.1 of Alotaibi & Smith 2017 on some vertices and modes.
 
-    Alternates nearest points of the scan and the separable fit (Equations 5 to 8). `vertices` and
-    `modes` are numbers, 0 for all; `prior` is the least weight of the prior.
+    A stage alternates between nearest points of the scan and the separable fit (Equations 5 to 8).
+    `vertices` and `modes` are numbers, 0 for all; `prior` is the least weight of the prior.
     """
 
     def __init__(
@@ -119,6 +119,6 @@ class IcpStage:
             )
         if 3 * kept.sum() < self.modes + 6:
             raise InputError(
-                f"only {kept.sum()} of {len(kept)} vertices of the model lie over the scan and "
-                "face as it does; check the landmarks, and that triangles run counter-clockwise."
+                f"only {kept.sum()} of {len(kept)} vertices of the model lie over the scan with a "
+                "similar normal; check the landmarks, and that triangles run counter-clockwise."
             )

@@ -48,7 +48,7 @@ def read_ict_arrays(path: Path, arrays: Mapping[str, Any], whole: bool = False) 
         MILLIMETRES,
         str(path),
     )
-    # The arrays repeat coordinates that are the same.
+    # The arrays repeat equal coordinates.
     uv, uv_triangles = merge_coordinates(triangles, uv, uv_triangles)
     model = replace(model, uv=uv, uv_triangles=uv_triangles)
     count = int(arrays["face_vertex_count"])

@@ -10,7 +10,7 @@ from xml.parsers.expat import ExpatError
 
 from skinnet.errors import InputError
 
-# menpo labels sides as the viewer sees them: its left eye is the person's right one.
+# menpo's left and right are those of the picture: its left eye is the person's right one.
 _GROUPS = {
     "chin": range(0, 17),
     "jaw": range(0, 17),

@@ -1,4 +1,4 @@
-"""Moments of correspondences: all that a separable fit needs to know of the vertices."""
+"""Moments of correspondences: the sums over vertices that a separable fit needs."""
 
 from collections.abc import Iterator
 from dataclasses import dataclass
@@ -16,9 +16,9 @@ class Moments:
 
     The data are rotated into the model's frame, which changes no residual because R is orthogonal.
     There A has the columns Phi = [Q, 1 (x) I], S modes and a translation, for the linear parameters
-    s alpha and R^T t. Neither these nor the ten columns of which y is a combination depend on the
-    pose: the nine e_j x_k, which combine to every rotation of the data points, and the mean shape.
-    So a fit that has these sums needs no further pass over the vertices.
+    s alpha and R^T t. y is a combination of ten columns: the nine e_j x_k, of which every rotation
+    of the data points is a combination, and the mean shape. No column depends on the pose, so a fit
+    that has these sums needs no further pass over the vertices.
     """
 
     design: Float[np.ndarray, "columns columns"]
@@ -36,13 +36,12 @@ def compute_moments(
     normals: Float[np.ndarray, "vertices 3"] | None = None,
     sliding: float = 0.0,
 ) -> Moments:
-    """Sum over the correspondences mean_i + Q_i alpha <-> points_i.
+    """Compute the moments of the correspondences mean_i + Q_i alpha <-> points_i.
 
     `weights` (None: 1) multiply the squared residuals. With `normals`, unit vectors in the model's
     frame, a residual along the surface counts only `sliding` times as much as one across it:
-    W_i = w_i (n n^T + sliding (I - n n^T)).
-
-    They are what Equation 6 of Alotaibi & Smith 2017 needs of A^T A and A^T y.
+    W_i = w_i (n n^T + sliding (I - n n^T)). The moments give A^T A and A^T y of Equation 6 of
+    Alotaibi & Smith 2017.
     """
     weights = np.ones(len(mean)) if weights is None else weights
     origin = weights @ points / weights.sum()

@@ -39,8 +39,8 @@ class NearestPoints(NamedTuple):
 class ScanPoints:
     """Points of a mesh with unit normals, and whether each lies on the boundary.
 
-    Spikes (`SPIKE_RATIO`) are removed first. Distances are to points, not to triangles. Subdivision
-    bounds the points' spacing, and a fit measures to the tangent plane.
+    Spikes (`SPIKE_RATIO`) are removed first. The nearest point is a vertex, not a point inside a
+    triangle; triangles are subdivided so that vertices are close to each other.
     """
 
     def __init__(self, mesh: Mesh) -> None:

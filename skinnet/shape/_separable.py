@@ -15,7 +15,7 @@ from skinnet.shape.similarity import Similarity
 
 ITERATIONS = 60
 TOLERANCE = 1e-12
-"""A fit has converged when a step lowers the objective by less than this share of it."""
+"""A fit has converged when the predicted decrease is less than this share of the objective."""
 
 # The identity, and the generators of rotations about x, y and z. With T one of them, the rotated
 # data are z = T R^T x, whose coefficients for the columns e_j x_k (j is slower) are T R^T.
@@ -92,7 +92,7 @@ class SeparableObjective:
     def _eliminate(
         self, scale: float
     ) -> tuple[Float[np.ndarray, "columns 10"], Float[np.ndarray, "10 10"]]:
-        """Compute A^+ times each data column (Equation 7), and the products of what it leaves."""
+        """Compute A^+ times each data column (Equation 7), and inner products of the residuals."""
         linear = self._solve_normal_equations(scale, self.moments.cross)
         return linear, self.moments.data - self.moments.cross.T @ linear
 
@@ -112,7 +112,7 @@ class SeparableObjective:
 
 
 class Solution(NamedTuple):
-    """Where a separable fit ended, and the objective after each accepted step."""
+    """The result of a separable fit, and the objective after each accepted step."""
 
     pose: Similarity
     alpha: Float[np.ndarray, "modes"]

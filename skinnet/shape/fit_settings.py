@@ -1,4 +1,4 @@
-"""What a fit is asked to do, and what each of its stages did."""
+"""Settings of a fit, and the record of each of its stages."""
 
 from dataclasses import dataclass
 
@@ -7,22 +7,22 @@ from skinnet.errors import InputError
 
 @dataclass(frozen=True)
 class FitSettings:
-    """How a model is fitted to a scan.
+    """Settings of the fit of a model to a scan.
 
     Args:
-        kept: share of the model's vertices, those with the closest matches, that a step fits.
-        normals: measure to the scan's tangent planes, and drop matches with another orientation.
-        sliding: with `normals`, the weight in [0, 1] of a squared residual along the surface.
-        angle: with `normals`, the largest angle in degrees between a vertex's normal and its
-        match's. map_weight: weight of the prior on the coefficients, relative to 1,000 matched
-        points that are
-            accurate to 1 mm, however many are matched; 0 is the paper's fit.
-        stages: for each stage, coarse to fine, the numbers of vertices and modes (0 for all) and
+        kept: Share of the model's vertices, those with the closest matches, that a step fits.
+        normals: Measure to the scan's tangent planes, and drop matches with another orientation.
+        sliding: With `normals`, the weight in [0, 1] of a squared residual along the surface.
+        angle: With `normals`, the largest angle in degrees between a vertex's normal and its
+            match's.
+        map_weight: Weight of the prior on the coefficients, relative to 1,000 matched points that
+            are accurate to 1 mm, however many are matched; 0 is the paper's fit.
+        stages: For each stage, coarse to fine, the numbers of vertices and modes (0 for all) and
             the least weight of the prior, while matches are still rough.
-        iterations: largest number of steps in each stage.
-        tolerance: a stage ends when the kept vertices' RMS distance changes, twice in a row, by
+        iterations: Largest number of steps in each stage.
+        tolerance: A stage ends when the kept vertices' RMS distance changes, twice in a row, by
             less than this share of it or by less than 0.01 mm.
-        seed: seed of the random choice of vertices in the coarse stages.
+        seed: Seed of the random choice of vertices in the coarse stages.
 
     Raises:
         InputError: If a value is out of range.

@@ -1,4 +1,4 @@
-"""Named points of a face: vertices of a model, positions on a scan."""
+"""Landmarks: named points of a face, as vertices of a model or positions on a scan."""
 
 import json
 from collections.abc import Mapping, Sequence
@@ -193,7 +193,7 @@ def _locate(path: Path, name: str, value: Any, mesh: Mesh | None) -> Float[np.nd
             mesh.vertices[_check_vertex(path, name, value, len(mesh.vertices))], np.float64
         )
     if isinstance(value, int):
-        raise InputError(f"{path} gives {name} as the number of a vertex; hand in the mesh too.")
+        raise InputError(f"{path} gives {name} as the number of a vertex; give the mesh too.")
     if not isinstance(value, Sequence) or len(value) != 3:
         raise InputError(f"{path}: {name} is {value!r}, and three coordinates are needed.")
     try:

@@ -24,7 +24,7 @@ class ShapeModel:
         triangles: Vertices of each triangle, counter-clockwise as seen from outside.
         uv: Texture coordinates in [0, 1]; None for a model without a texture space.
         uv_triangles: Texture coordinates of each triangle's corners.
-        landmarks: Vertex of each named point; `IBUG` lists the names that a fit knows.
+        landmarks: Vertex of each named point; `IBUG` lists the names that a fit uses.
         millimetres: Length of the model's unit in mm.
         name: What error messages call the model, usually its path.
 
@@ -63,7 +63,7 @@ class ShapeModel:
         millimetres: float = 1.0,
         name: str = "model",
     ) -> "ShapeModel":
-        """Make a model of arrays that may not belong together.
+        """Make a model of arrays, and check that they belong together.
 
         Args:
             mean: Vertices [N, 3] of the mean face, in the model's unit.
@@ -213,7 +213,7 @@ def _find_bad_value(arrays: Mapping[str, Float[np.ndarray, "..."] | None]) -> st
             continue
         with np.errstate(invalid="ignore"):
             total = array.sum(dtype=np.float64)
-        # The sum is finite where all values are, and needs no array of its own.
+        # The sum is finite if all values are, and takes no memory as np.isfinite(array) does.
         if not np.isfinite(total):
             return f"its {name} has values that are NaN or infinite"
     return None

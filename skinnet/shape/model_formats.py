@@ -19,7 +19,7 @@ from skinnet.shape.landmarks import read_landmark_vertices
 from skinnet.shape.model import ShapeModel
 
 VERSION = "1"
-"""Version of skinnet's own layout, under the key `skinnet_shape_model`."""
+"""Version of skinnet's own layout, stored under `_KEY`."""
 
 _KEY = "skinnet_shape_model"
 

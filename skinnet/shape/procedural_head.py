@@ -35,7 +35,7 @@ ROUNDNESS = 2.6
 """Exponent of the superellipsoid under the features."""
 
 IDENTITY_SIZE = len(_BUMPS) * 3 + len(_AXES) + 1
-"""How many numbers make a head: three for each feature, four for the superellipsoid."""
+"""Number of identity numbers of a head: three a feature, four for the superellipsoid."""
 
 
 def compute_chart_angles(

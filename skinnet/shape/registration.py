@@ -34,7 +34,7 @@ class Registration:
         distances: Distance in mm of each vertex to the scan's surface.
         kept: True for the vertices that the last step fitted.
         millimetres: Length of the scan's unit in mm, as the fit's scale implies.
-        record: What each stage did.
+        record: The record of each stage.
     """
 
     pose: Similarity
@@ -66,9 +66,9 @@ def register(
 ) -> Registration:
     """Fit a shape model to a scan by trimmed, non-rigid ICP.
 
-    The fit alternates between nearest points of the scan and pose, scale and coefficients that fit
-    them best. Matches on the scan's boundary are dropped, and of all vertices the share
-    `settings.kept` with the closest matches is fitted.
+    The fit alternates between two steps: find the nearest points of the scan, and fit pose, scale
+    and coefficients to them. Matches on the scan's boundary are dropped, and the share
+    `settings.kept` of all vertices, those with the closest matches, is fitted.
 
     Args:
         model: The shape model.
@@ -76,7 +76,7 @@ def register(
         landmarks: Named points of the scan, at least four of the model's landmarks. They start the
             fit.
         settings: How to fit; None for the defaults.
-        progress: Called with one line of text after each stage.
+        progress: A function that is called with one line of text after each stage.
         start: A pose near the solution, used where there are no landmarks.
             `skinnet.pipeline.find_initial_pose` finds the pose of an upright face.
 
@@ -84,8 +84,8 @@ def register(
         The fitted pose, coefficients and vertices.
 
     Raises:
-        InputError: If there are neither landmarks nor a start, fewer than four landmarks are known,
-            or the model does not come to lie on the scan.
+        InputError: If there are neither landmarks nor a start, fewer than four landmarks are those
+            of the model, or the fitted model is far from the scan.
 
     Source:
         Section 4.1 and Equations 5 to 8 of Alotaibi & Smith 2017.
@@ -130,7 +130,7 @@ def _begin(
         return _fit_to_landmarks(model, landmarks, settings.map_weight)
     if start is None:
         raise InputError(
-            f"{scan.name} comes without landmarks and without a start; give one of the two. "
+            f"{scan.name} has neither landmarks nor a start; give one of the two. "
             "skinnet.pipeline.find_initial_pose finds the pose of an upright face."
         )
     return start, np.zeros(1)
@@ -146,7 +146,7 @@ def _fit_to_landmarks(
     names = sorted(set(landmarks) & set(model.landmarks))
     if len(names) < 4:
         raise InputError(
-            f"{len(names)} of the scan's landmarks are known to {model.name}; four are needed, of "
+            f"The scan and {model.name} have {len(names)} landmarks in common, and need four, of "
             f"{', '.join(sorted(model.landmarks)) or 'none: the model has no landmarks'}."
         )
     vertices = [model.landmarks[name] for name in names]

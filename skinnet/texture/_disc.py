@@ -1,4 +1,4 @@
-"""A face made a topological disc: checks, its rim, and its holes closed."""
+"""Preparation of a face for embedding as a topological disc: checks, rim, filled holes."""
 
 import numpy as np
 from jaxtyping import Float, Int
@@ -11,6 +11,7 @@ from skinnet.mesh._topology import (
     half_edges,
     label_components,
 )
+from skinnet.mesh._vectors import measure_edges
 
 
 def check_values(
@@ -29,8 +30,8 @@ def check_values(
         np.array_equal(np.sort(mirror), count) and np.array_equal(mirror[mirror], count)
     ):
         raise InputError(
-            f"A mirror gives each of the {len(vertices)} vertices a partner, whose partner is the "
-            "vertex; find it with find_mirror_vertices."
+            f"The mirror must pair each of the {len(vertices)} vertices with its mirror image; use "
+            "find_mirror_vertices."
         )
 
 
@@ -56,14 +57,9 @@ def find_rim_and_holes(
 ) -> tuple[Int[np.ndarray, "rim"], list[Int[np.ndarray, "_"]]]:
     loops = boundary_loops(triangles)
     if not loops:
-        raise InputError("The mesh to embed is closed; cut it open, a head at the neck.")
+        raise InputError("The mesh to embed is closed; cut it open, for example at the neck.")
     loops.sort(key=lambda loop: -measure_edges(vertices[loop]).sum())
     return loops[0], loops[1:]
-
-
-def measure_edges(loop: Float[np.ndarray, "loop 3"]) -> Float[np.ndarray, "loop"]:
-    """Measure the distance from each vertex of a closed curve to the next."""
-    return np.asarray(np.linalg.norm(np.roll(loop, -1, 0) - loop, axis=1))
 
 
 def fill_holes(
@@ -91,7 +87,7 @@ def pair_holes(
     holes: list[Int[np.ndarray, "_"]],
     rim: Int[np.ndarray, "rim"],
 ) -> Int[np.ndarray, "points"]:
-    """Extend the partners of vertices by those of the holes' middles."""
+    """Extend the mirror from the vertices to the middles of the holes."""
     images = [frozenset(mirror[loop].tolist()) for loop in (rim, *holes)]
     places = {frozenset(loop.tolist()): i for i, loop in enumerate((rim, *holes))}
     lone = next((i for i, image in enumerate(images) if image not in places), None)
@@ -110,10 +106,10 @@ def pair_holes(
 def add_mirror_images(
     triangles: Int[np.ndarray, "triangles 3"], mirror: Int[np.ndarray, "vertices"]
 ) -> Int[np.ndarray, "more 3"]:
-    """Add the mirror images of triangles that are missing in a notch of the boundary.
+    """Add missing mirror images of triangles where they fill a notch of the boundary.
 
-    A model whose vertices were cut out of a head of quads keeps half a quad on one side and not on
-    the other. Only images that fit between two edges of the boundary are added.
+    A face that was cropped from a head of quads may keep half a quad on one side and not on the
+    other. Only images that share two edges with the boundary are added.
     """
     count = len(mirror)
     while True:

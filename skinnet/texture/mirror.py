@@ -1,4 +1,4 @@
-"""Mirror symmetry of a face: which vertices are images of each other."""
+"""Mirror symmetry of a face: pairs of vertices that are mirror images of each other."""
 
 import numpy as np
 from jaxtyping import Float, Int

@@ -7,8 +7,9 @@ from jaxtyping import Bool, Float, Int
 
 from skinnet.errors import InputError
 from skinnet.images.srgb import srgb_to_linear
+from skinnet.mesh._barycentric import interpolate
 from skinnet.mesh._topology import boundary, label_components, weld
-from skinnet.mesh._vectors import normalise
+from skinnet.mesh._vectors import measure_edges, normalise
 from skinnet.mesh.closest_point import ClosestPoints, TriangleTree
 from skinnet.mesh.mesh import Mesh
 from skinnet.mesh.normals import compute_vertex_normals
@@ -19,15 +20,15 @@ MAX_NORMAL_ANGLE = 60.0
 """Largest angle in degrees between the normals of model and scan at corresponding points."""
 
 CUT_RATIO = 1.5
-"""An edge crosses a cut of the scan's texture if it is this many times as long there as the scan's
-own triangles at its ends imply. About 0.4 % of a real face's edges do."""
+"""An edge crosses a cut of the scan's texture if its length in the texture is this many times what
+the scan's own triangles at its ends imply. About 0.4 % of a real face's edges do."""
 
 ON_EDGE = 1e-9
 """Barycentric coordinate below which a point lies on the opposite edge."""
 
 
 class _ScanPositions(NamedTuple):
-    """Closest points on the scan; meaningless where not `covered`. `island` is the UV island."""
+    """Closest points on the scan, undefined where not `covered`; `island` is the UV island."""
 
     covered: Bool[np.ndarray, "points"]
     position: Float[np.ndarray, "points 3"]
@@ -47,7 +48,7 @@ def project_texture(
 
     Each vertex of the model takes the texture coordinates of the scan's closest point, and inside a
     triangle they are interpolated. A point is covered if the closest point is near enough, has a
-    similar normal, and is not on the scan's boundary, beyond which nothing was measured. Triangles
+    similar normal, and is not on the scan's boundary, beyond which there is no surface. Triangles
     with a corner that is not covered, or that a cut of the scan's texture crosses, are resampled
     texel by texel, each with its own closest point, under the same conditions and with one sample
     per texel.
@@ -123,15 +124,15 @@ class _TexturedScan:
     def locate(
         self, points: Float[np.ndarray, "points 3"], normals: Float[np.ndarray, "points 3"]
     ) -> _ScanPositions:
-        """Find the closest points, and whether each shows the same piece of surface."""
+        """Find the closest points, and whether each is on the same part of the surface."""
         closest = self.surface.query(points, self.max_distance)
         triangle = closest.triangle
-        normal = normalise(_interpolate(closest, self.normals[self.triangles[triangle]]))
+        normal = normalise(interpolate(closest.barycentric, self.normals[self.triangles[triangle]]))
         agrees = np.einsum("px,px->p", normal, normals) >= self.min_cosine
         return _ScanPositions(
             (triangle >= 0) & agrees & ~self._lies_on_boundary(closest),
-            _interpolate(closest, self.vertices[self.triangles[triangle]]),
-            _interpolate(closest, self.uv[self.uv_triangles[triangle]]),
+            interpolate(closest.barycentric, self.vertices[self.triangles[triangle]]),
+            interpolate(closest.barycentric, self.uv[self.uv_triangles[triangle]]),
             self.island[triangle],
             self.density[triangle],
         )
@@ -147,19 +148,9 @@ class _TexturedScan:
 def _compute_density(
     corners: Float[np.ndarray, "triangles 3 3"], uv: Float[np.ndarray, "triangles 3 2"]
 ) -> Float[np.ndarray, "triangles"]:
-    """Compute the length in the texture of a unit on the surface, the largest of three edges'."""
-    length = _measure_edges(corners)
-    return np.asarray((_measure_edges(uv) / np.where(length > 0, length, np.inf)).max(1))
-
-
-def _interpolate(
-    closest: ClosestPoints, corners: Float[np.ndarray, "points 3 k"]
-) -> Float[np.ndarray, "points k"]:
-    return np.asarray(np.einsum("pk,pkx->px", closest.barycentric, corners))
-
-
-def _measure_edges(corners: Float[np.ndarray, "triangles 3 k"]) -> Float[np.ndarray, "triangles 3"]:
-    return np.asarray(np.linalg.norm(np.roll(corners, -1, 1) - corners, axis=2))
+    """Compute the largest ratio of an edge's length in the texture to that on the surface."""
+    length = measure_edges(corners)
+    return np.asarray((measure_edges(uv) / np.where(length > 0, length, np.inf)).max(1))
 
 
 def _find_whole(
@@ -167,9 +158,9 @@ def _find_whole(
 ) -> Bool[np.ndarray, "triangles"]:
     """Find triangles that no cut of the scan's texture crosses."""
     island, density = places.island[triangles], places.density[triangles]
-    length = _measure_edges(places.position[triangles])
+    length = measure_edges(places.position[triangles])
     expected = CUT_RATIO * np.maximum(density, np.roll(density, -1, 1)) * length
-    whole = _measure_edges(places.uv[triangles]) <= expected + 1e-6
+    whole = measure_edges(places.uv[triangles]) <= expected + 1e-6
     return np.asarray((island == island[:, :1]).all(1) & whole.all(1))
 
 

@@ -11,6 +11,7 @@ from scipy.sparse.linalg import splu
 
 from skinnet.errors import InputError
 from skinnet.mesh._topology import edge_keys, half_edges
+from skinnet.mesh._vectors import measure_edges
 from skinnet.texture._disc import (
     add_mirror_images,
     check_disc,
@@ -18,7 +19,6 @@ from skinnet.texture._disc import (
     check_values,
     fill_holes,
     find_rim_and_holes,
-    measure_edges,
     pair_holes,
 )
 
@@ -29,8 +29,8 @@ MIN_COTANGENT = 0.05
 """Lower limit of cotangents, because Tutte's theorem needs positive weights."""
 
 ONE_SIDED = 0.1
-"""Factor on the weight of an edge whose mirror image is no edge. With 0 a vertex may be left with
-two neighbours; with 1 more triangles flip."""
+"""Factor on the weight of an edge whose mirror image is no edge. With 0 a vertex may have only two
+neighbours; with 1 more triangles are flipped."""
 
 BALANCING_ROUNDS = 2
 """Rounds that lower the weights where triangles are too small in the texture. On ICT-FaceKit's face
@@ -52,10 +52,10 @@ def compute_tutte_embedding(
 
     With `mirror`, boundary and weights are averaged with their mirror images. The solution is
     unique, so it is symmetric about u = 1/2. Edges whose mirror image is no edge, such as the
-    diagonals of quads that were all split the same way, get a small weight: the faces that remain
-    without them are convex, however they are split. That is no proof for finite weights, so flips
-    are checked. A triangle on the boundary without a mirror image gets one while weights are
-    computed.
+    diagonals of quads that were all split in one direction, get a small weight. With weight 0 the
+    quads would be convex, and any diagonal would be valid; for small weights nothing is proved, so
+    flipped triangles are counted. A triangle on the boundary without a mirror image gets one while
+    weights are computed.
 
     Args:
         vertices: Vertices of a face with one outer boundary, y up and x to the face's left.
@@ -170,7 +170,7 @@ def _place_on_circle(
     angle = 2 * np.pi * (np.cumsum(length) - length) / length.sum()
     x, y = (vertices[rim, :2] - vertices[rim, :2].mean(0)).T
     if mirror is None:
-        # The rotation that brings the circle closest to the rim as seen from the front.
+        # The rotation that brings the circle closest to the rim in a front view.
         wave = np.exp(-1j * angle)
         angle = angle + np.angle(((x + 1j * y) * wave).sum())
     else:

@@ -12,7 +12,7 @@ from skinnet.mesh.raster import rasterise
 from skinnet.mesh.sampling import sample_bilinear
 
 MAX_SAMPLES = 8
-"""Largest number of samples along a texel's side; a still denser picture is subsampled."""
+"""Largest number of samples along a texel's side; a denser picture is subsampled."""
 
 SINGLE_SAMPLE_LIMIT = 1.5
 """Largest number of picture pixels along a texel for which one sample is enough."""
@@ -31,7 +31,7 @@ class WarpedTexture(NamedTuple):
 
 
 class TextureSpace:
-    """The texels of a square texture: which triangle each lies in, and where in it.
+    """The texels of a square texture, each with its triangle and its position in it.
 
     The texel of row r and column c has its centre at u = (c + .5) / size, v = 1 - (r + .5) / size.
 

@@ -75,7 +75,7 @@ def test_files_hold_the_model_exactly(tmp_path: Path) -> None:
         with np.load(path) as file:
             arrays = dict(file) | {"deviations": deviations}
         np.savez(tmp_path / "spoilt.npz", **arrays)
-        with pytest.raises(InputError, match="is not a whole model"):
+        with pytest.raises(InputError, match="is not a complete file"):
             JointModel.load(tmp_path / "spoilt.npz")
 
 

@@ -30,5 +30,5 @@ def test_arrays_that_do_not_match_are_refused(
     with np.load(path) as file:
         arrays = dict(file) | change
     np.savez(path, **arrays)
-    with pytest.raises(InputError, match="is not a whole model"):
+    with pytest.raises(InputError, match="is not a complete file"):
         load_maps(path)

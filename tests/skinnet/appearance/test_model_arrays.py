@@ -26,7 +26,7 @@ def spoilt(path: Path, change: Callable[[dict[str, Any], dict[str, Any]], None])
 def test_files_of_another_kind_or_format_are_named(stack: SubjectStack, tmp_path: Path) -> None:
     path = tmp_path / "model.npz"
     LinearModel.fit(stack).save(path)
-    with pytest.raises(InputError, match="is a LinearModel, and a HybridModel is wanted"):
+    with pytest.raises(InputError, match="is a LinearModel, and a HybridModel is needed"):
         HybridModel.load(path)
     spoilt(path, lambda header, _: header.update(format=2))
     with pytest.raises(InputError, match="has format 2, and this skinnet reads format 1"):
@@ -62,7 +62,7 @@ def test_damaged_files_are_refused(
     path = tmp_path / "model.npz"
     HybridModel.fit(stack).save(path)
     spoilt(path, change)
-    with pytest.raises(InputError, match="is not a whole model of skinnet's"):
+    with pytest.raises(InputError, match="is not a complete file of skinnet's"):
         HybridModel.load(path)
 
 
@@ -79,5 +79,5 @@ def test_files_cut_short_or_pickled_are_refused(stack: SubjectStack, tmp_path: P
     flipped[len(whole) // 2] ^= 255
     for content in [*contents, bytes(flipped)]:
         path.write_bytes(content)
-        with pytest.raises(InputError, match="is not a whole model of skinnet's"):
+        with pytest.raises(InputError, match="is not a complete file of skinnet's"):
             HybridModel.load(path)

@@ -65,7 +65,7 @@ def test_the_common_mask_leaves_out_what_one_lacks(patchy: SubjectStack) -> None
     face = patchy.texture(6).mask
     assert not cover.mask[5:7].any() and (cover.mask | face == face).all()
     assert cover.left_out == face[5:7].sum() and cover.filled == 0
-    assert f"{cover.left_out} that too few subjects have are left out" in str(cover)
+    assert f"{cover.left_out} are left out because too few subjects have them" in str(cover)
 
 
 def test_a_share_fills_with_the_mean_of_the_others(patchy: SubjectStack) -> None:

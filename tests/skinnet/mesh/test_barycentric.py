@@ -1,8 +1,8 @@
-"""Gradients of barycentric coordinates."""
+"""Gradients of barycentric coordinates, and interpolation."""
 
 import numpy as np
 
-from skinnet.mesh._barycentric import barycentric_gradients
+from skinnet.mesh._barycentric import barycentric_gradients, interpolate
 
 
 def test_a_step_to_a_corner_changes_its_coordinate_by_one() -> None:
@@ -18,3 +18,8 @@ def test_a_step_to_a_corner_changes_its_coordinate_by_one() -> None:
 def test_a_triangle_without_an_area_has_no_gradients() -> None:
     line = np.array([[[0.0, 0], [1, 1], [2, 2]], [[3, 3], [3, 3], [3, 3]]])
     assert np.isnan(barycentric_gradients(line)).all()
+
+
+def test_values_are_interpolated_between_corners() -> None:
+    corners = np.array([[[1.0, 0], [2, 0], [4, 8]]])
+    assert np.allclose(interpolate(np.array([[0.5, 0.25, 0.25]]), corners), [[2, 2]])

@@ -87,4 +87,4 @@ def test_old_names_of_the_camera_angles_are_answered_with_the_new(
 def test_something_else_than_maps_is_refused(model: Path, tmp_path: Path, refused: Refused) -> None:
     assert "There is no file" in refused("edit-maps", tmp_path / "absent_maps.npz")
     said = refused("edit-maps", model / "hybrid.npz")
-    assert "is a HybridModel, and a SkinTexture is wanted" in said
+    assert "is a HybridModel, and a SkinTexture is needed" in said

@@ -43,4 +43,4 @@ def test_bad_samples_are_refused(
 
 def test_a_linear_model_is_no_hybrid(model: Path, refused: Refused) -> None:
     said = refused("sample", model / "linear.npz")
-    assert "is a LinearModel, and a HybridModel is wanted" in said
+    assert "is a LinearModel, and a HybridModel is needed" in said

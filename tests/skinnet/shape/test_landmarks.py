@@ -73,7 +73,7 @@ def test_vertices_of_a_mesh_stand_for_points(tmp_path: Path) -> None:
     read = read_landmarks(path, dome())
     assert np.array_equal(read["nose_tip"], dome().vertices[31])
     assert read["chin"].tolist() == [1, 2, 3]
-    with pytest.raises(InputError, match="hand in the mesh"):
+    with pytest.raises(InputError, match="give the mesh"):
         read_landmarks(path)
 
 
