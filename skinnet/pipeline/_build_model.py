@@ -30,8 +30,8 @@ class ModelSettings:
 
     Args:
         components: Principal components kept; null: all that the subjects span, up to 100.
-        mask: Picture over the texture space, white where there is skin, such as the paper's
-            hand-drawn one; null: all texels that enough subjects have.
+        mask: Picture over the texture space, white where there is skin (the paper's was drawn by
+            hand); null: all texels that enough subjects have.
         share: Share of the subjects that must have a texel.
         effect: Scale hemoglobin, melanin and the offset by their effect on RGB, instead of giving
             each the same total variance. The paper does not say how it mixes them.
@@ -63,16 +63,19 @@ def add_arguments(parser: ArgumentParser) -> None:
         "--shape",
         type=Path | None,
         default=None,
-        help="The shape model of the fits, for it; by default the procedural face.",
+        help="The shape model of the fits, for --joint; by default the procedural face.",
     )
     parser.add_argument(
-        "--shape_landmarks", type=Path | None, default=None, help="See model_landmarks of maps."
+        "--shape_landmarks",
+        type=Path | None,
+        default=None,
+        help="Landmarks of that model, as --model_landmarks of skinnet maps.",
     )
     add_output(parser, str(MODEL_FOLDER))
 
 
 def run(config: Namespace) -> int:
-    """Write hybrid.npz, linear.npz and, if asked for, joint.npz; measures and figures of them."""
+    """Write hybrid.npz, linear.npz, joint.npz if asked for, and their measures and figures."""
     output = make_output_folder(config.output or MODEL_FOLDER)
     files = find_maps(config.maps or [Path(OUTPUT)])
     stack = stack_subjects(files, output / "stack")

@@ -12,9 +12,15 @@ from skinnet.appearance.edit import PigmentEdit, edit_texture
 from skinnet.appearance.maps_file import load_maps, save_maps
 from skinnet.appearance.skin_texture import SkinTexture
 from skinnet.images.photograph import read_photo, write_png
-from skinnet.inference.panel import _round_up, draw_grid, draw_picture
+from skinnet.inference.panel import draw_grid, draw_picture
 from skinnet.mesh.mesh_file import read_mesh, write_mesh
-from skinnet.pipeline._maps_writer import add_texture, draw_pigments, fill_albedo, show_albedo
+from skinnet.pipeline._maps_writer import (
+    add_texture,
+    choose_scale_ends,
+    draw_pigments,
+    fill_albedo,
+    show_albedo,
+)
 from skinnet.pipeline._output import MAPS_END, add_end, add_output, make_output_folder
 from skinnet.pipeline._progress import log
 from skinnet.pipeline.relight import RelightSettings
@@ -26,7 +32,7 @@ RENAMED = {
     "turn": "yaw",
     "tilt": "pitch",
 }
-"""Flags and keys of earlier versions; errors in YAML name a key without its group."""
+"""Flags and keys of earlier versions, and their new names; YAML errors give keys without group."""
 
 _PIGMENTS = ("melanin", "hemoglobin")
 
@@ -35,15 +41,15 @@ def add_arguments(parser: ArgumentParser) -> None:
     """Add the options for maps, edits, light and output."""
     parser.add_argument("maps", type=Path, help="A NAME_maps.npz file.")
     for name in _PIGMENTS:
-        parser.add_argument(f"--{name}", type=float, default=1.0, help="Factor, 0 or more.")
+        parser.add_argument(f"--{name}", type=float, default=1.0, help="Factor from 0 to 10.")
         parser.add_argument(
-            f"--{name}_add", type=float, default=0.0, help="Volume fraction added after it."
+            f"--{name}_add", type=float, default=0.0, help="Volume fraction added after scaling."
         )
         parser.add_argument(
             f"--{name}_paint",
             type=float | None,
             default=None,
-            help="Volume fraction that replaces the map, as a rule under a mask.",
+            help="Volume fraction that replaces the map, usually inside a mask.",
         )
     parser.add_argument(
         "--mask",
@@ -90,17 +96,12 @@ def _draw_rows(
     before: SkinTexture, after: SkinTexture, colour: SkinColour
 ) -> list[list[Image.Image]]:
     """Draw albedo and pigments before and after, each pigment on one scale."""
-    ends = (_scale_end(before, after, "f_mel"), _scale_end(before, after, "f_blood"))
+    ends = choose_scale_ends((before, after))
     rows = []
     for when, texture in (("before", before), ("after", after)):
         albedo = draw_picture(f"albedo {when}", show_albedo(texture.albedo(colour), texture))
         rows.append([albedo, *draw_pigments(texture, ends)])
     return rows
-
-
-def _scale_end(before: SkinTexture, after: SkinTexture, name: str) -> float:
-    values = [np.percentile(getattr(one, name)[one.mask], 99) for one in (before, after)]
-    return _round_up(float(max(values)))
 
 
 def _write_faces(

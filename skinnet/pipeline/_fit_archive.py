@@ -33,7 +33,7 @@ def save_fit(path: Path, fit: Registration) -> None:
 
 
 def load_fit(path: Path) -> Registration:
-    """Read a fit; a file that is missing, damaged or something else is an `InputError`."""
+    """Read a fit; a file that is missing, damaged or of another kind is an `InputError`."""
     try:
         with np.load(path, allow_pickle=False) as file:
             pose = Similarity(file["rotation"], float(file["scale"]), file["translation"])

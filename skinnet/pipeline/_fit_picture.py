@@ -13,6 +13,8 @@ from skinnet.render.visibility import trace_geometry
 from skinnet.shape.registration import Registration
 
 _PLASTER = np.array([0.55, 0.53, 0.5])
+"""Albedo of plaster, linear RGB."""
+
 _MAX_DISTANCE = 3.0
 """Distance in mm at the end of the colour scale."""
 
@@ -43,7 +45,7 @@ def draw_fit(scan: Mesh, model: Mesh, fit: Registration) -> UInt8[np.ndarray, "h
 
 
 def _render_plaster(mesh: Mesh, view: PerspectiveView) -> UInt8[np.ndarray, "height width 3"]:
-    """Render a mesh without its texture, under a lamp with soft shadows and a pale sky."""
+    """Render a mesh as grey plaster, under a lamp with soft shadows and a sky."""
     lights = (
         DirectionalLight((-0.45, 0.55, 0.75), 0.75, angle=6.0),
         SphericalHarmonics.sky((0.55, 0.57, 0.6), (0.2, 0.2, 0.2)),

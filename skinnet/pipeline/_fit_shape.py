@@ -13,6 +13,7 @@ from skinnet.mesh.mesh import Mesh
 from skinnet.mesh.mesh_file import write_mesh
 from skinnet.pipeline._fit_archive import load_fit, save_fit
 from skinnet.pipeline._fit_picture import draw_fit
+from skinnet.pipeline._output import add_end
 from skinnet.pipeline._progress import compute_fingerprint, log, read_finished, write_record
 from skinnet.pipeline._scans import (
     Scan,
@@ -20,8 +21,8 @@ from skinnet.pipeline._scans import (
     add_scan_arguments,
     collect_options,
     load_scan,
+    make_output_stem,
     process_scans,
-    stem_of_output,
 )
 from skinnet.pipeline.initial_pose import find_initial_pose
 from skinnet.shape.fit_settings import FitSettings
@@ -29,7 +30,7 @@ from skinnet.shape.model import ShapeModel
 from skinnet.shape.registration import Registration, register
 
 _NO_FACE_MM = 10.0
-"""RMS distance of the kept vertices in mm above which a fit has found no face."""
+"""RMS distance of the kept vertices in mm above which no face was found."""
 
 _UNLIKELY_SHAPE = 2.0
 """RMS of the coefficients, in standard deviations, above which a fit is doubtful."""
@@ -39,7 +40,7 @@ _ENDS = ("_shape.npz", "_shape.obj", "_shape.png", "_shape.json")
 
 @dataclass(frozen=True)
 class FittedScan:
-    """A scan, the shape fitted to it, and FOLDER/NAME of its files."""
+    """A scan, the shape fitted to it, and FOLDER/NAME with which the names of its files begin."""
 
     scan: Scan
     fit: Registration
@@ -78,13 +79,13 @@ def fit_scan(
     settings: FitSettings,
     textured: bool = False,
 ) -> FittedScan:
-    """Fit a shape model to one scan, or read the fit that the same inputs gave before."""
+    """Fit a shape model to one scan, or read the earlier fit of these inputs."""
     scan = load_scan(path, model, options, textured)
-    stem = stem_of_output(path, output)
+    stem = make_output_stem(path, output)
     marks = {} if scan.landmarks is None else scan.landmarks
     points = {name: point.tolist() for name, point in marks.items()}
     fingerprint = compute_fingerprint(path, options.model or "default", points, settings)
-    archive, mesh, picture, record = (stem.with_name(stem.name + end) for end in _ENDS)
+    archive, mesh, picture, record = (add_end(stem, end) for end in _ENDS)
     if read_finished(record, fingerprint, [archive, mesh, picture]) is not None:
         log(f"{archive} is there already and is kept.")
         return FittedScan(scan, load_fit(archive), stem, fingerprint)
@@ -108,11 +109,12 @@ def fit_scan(
 def describe_fit(fitted: FittedScan) -> str:
     """Describe a fit in one line."""
     fit = fitted.fit
-    end = "" if fit.converged else "; it had not converged after the last iteration"
+    end = "" if fit.converged else "; the fit did not converge"
     return (
         f"{fitted.scan.path}: {fit.rms:.2f} mm RMS over the nearest "
-        f"{fit.kept.mean():.0%} of the model, {np.percentile(fit.distances, 95):.1f} mm at "
-        f"95 % of all of it; a unit of the scan is {fit.millimetres:.3g} mm{end}; "
+        f"{fit.kept.mean():.0%} of the model, 95 % of all vertices within "
+        f"{np.percentile(fit.distances, 95):.1f} mm; a unit of the scan is {fit.millimetres:.3g} mm"
+        f"{end}; "
         f"{fitted.stem}_shape.npz, .obj, .png, .json"
     )
 

@@ -12,6 +12,7 @@ from jsonargparse import ArgumentParser, Namespace
 from skinnet.appearance.skin_texture import SkinTexture
 from skinnet.pipeline._fit_shape import FittedScan, fit_scan
 from skinnet.pipeline._maps_writer import MAPS_ENDS, write_maps
+from skinnet.pipeline._output import add_end
 from skinnet.pipeline._progress import compute_fingerprint, log, read_finished, write_record
 from skinnet.pipeline._scans import add_scan_arguments, collect_options, process_scans
 from skinnet.pipeline._warp_scan import make_texture_space, warp_scan
@@ -23,7 +24,7 @@ from skinnet.shape.model import ShapeModel
 from skinnet.texture.warp import WarpedTexture
 
 _DOUBTFUL_SHARE = 0.5
-"""Share of texels off the skin manifold above which maps are doubtful."""
+"""Share of texels whose colour is off the skin manifold above which maps are doubtful."""
 
 
 @dataclass(frozen=True)
@@ -48,7 +49,7 @@ def add_arguments(parser: ArgumentParser) -> None:
 
 
 def run(config: Namespace) -> int:
-    """Fit and warp each scan, calibrate all together, invert; finished work is kept."""
+    """Fit and warp each scan, calibrate all together, and invert; finished steps are reused."""
     options = collect_options(config)
     config.colour.check()
     model = embed_model(options.load_model(), config.warp.own_uv)
@@ -80,8 +81,8 @@ def write_scan_maps(
         colours.settings,
         colours.colour.to_record(),
     )
-    record = stem.with_name(f"{stem.name}_maps.json")
-    files = [stem.with_name(stem.name + end) for end in MAPS_ENDS]
+    record = add_end(stem, "_maps.json")
+    files = [add_end(stem, end) for end in MAPS_ENDS]
     if read_finished(record, fingerprint, files) is not None:
         log(f"{files[0]} is there already and is kept.")
         return
@@ -91,13 +92,14 @@ def write_scan_maps(
     write_record(record, fingerprint, summary)
     if off_manifold > _DOUBTFUL_SHARE:
         log(
-            f"{path}: the colours of {off_manifold:.0%} of the texels are not those of skin, so "
+            f"{path}: {off_manifold:.0%} of the texels have a colour that skin cannot have, so "
             "their pigments are doubtful; name the light and camera (--colour.light, .camera) or "
             "something white in the texture (--colour.white)."
         )
     mean = ", ".join(f"{name} {summary[name]['median']:.3g}" for name in ("melanin", "hemoglobin"))
     print(
-        f"{path}: median {mean}; {off_manifold:.1%} of the texels lie off the colours of skin; "
+        f"{path}: median {mean}; {off_manifold:.1%} of the texels have a colour that skin cannot "
+        "have; "
         f"{stem}_maps.npz, _panel.png, _face.obj",
         flush=True,
     )

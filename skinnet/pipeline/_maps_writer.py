@@ -1,5 +1,6 @@
 """Writer of one person's maps: numbers, pictures, a textured mesh and a panel."""
 
+from collections.abc import Sequence
 from pathlib import Path
 
 import numpy as np
@@ -12,10 +13,11 @@ from skinnet.appearance.maps_file import save_maps
 from skinnet.appearance.skin_texture import SkinTexture
 from skinnet.images.photograph import write_png
 from skinnet.images.srgb import linear_to_srgb, to_uint8
-from skinnet.inference.panel import BLANK, draw_grid, draw_picture, draw_pigment_map
+from skinnet.inference.panel import BLANK, _round_up, draw_grid, draw_picture, draw_pigment_map
 from skinnet.mesh.mesh import Mesh
 from skinnet.mesh.mesh_file import write_mesh
 from skinnet.pipeline import relight
+from skinnet.pipeline._output import MAPS_END, add_end
 from skinnet.render.scene import Scene
 
 _FLUSH, _TAN = 2.0, 1.5
@@ -25,14 +27,15 @@ _UNKNOWN_ALBEDO = 0.6
 """Grey albedo of texels that a scan does not cover, in pictures only."""
 
 _LEVELS = 65535
+"""Largest number in a 16-bit PNG."""
 
-MAPS_ENDS = ("_maps.npz", "_melanin.png", "_hemoglobin.png", "_face.obj", "_panel.png")
+MAPS_ENDS = (MAPS_END, "_melanin.png", "_hemoglobin.png", "_face.obj", "_panel.png")
 """Ends of the names of the files that `write_maps` writes."""
 
 
 def write_maps(stem: Path, texture: SkinTexture, colour: SkinColour, face: Mesh) -> list[Path]:
     """Write NAME_maps.npz, NAME_melanin.png, NAME_hemoglobin.png, NAME_face.obj and a panel."""
-    files = [stem.with_name(stem.name + end) for end in MAPS_ENDS]
+    files = [add_end(stem, end) for end in MAPS_ENDS]
     maps, melanin, hemoglobin, mesh, panel = files
     save_maps(maps, texture, colour)
     write_fraction(melanin, texture, "f_mel")
@@ -49,7 +52,7 @@ def add_texture(face: Mesh, texture: UInt8[np.ndarray, "h w 3"]) -> Mesh:
 
 
 def write_fraction(path: Path, texture: SkinTexture, name: str) -> None:
-    """Write a map to a 16-bit PNG with fraction = scale * pixel; its text gives the scale."""
+    """Write a map to a 16-bit PNG with fraction = scale * pixel; a text chunk holds the scale."""
     values = np.where(texture.mask, getattr(texture, name), 0)
     scale = float(values.max()) / _LEVELS or 1.0
     pixels = np.rint(values / scale).astype(np.uint16)
@@ -75,9 +78,9 @@ def fill_albedo(
 def draw_maps_panel(
     texture: SkinTexture, colour: SkinColour, face: Mesh
 ) -> UInt8[np.ndarray, "h w 3"]:
-    """Draw texture and maps above, and the face relit, flushed and tanned below.
+    """Draw the texture and its maps above, and the face relit, flushed and tanned below.
 
-    They are in the manner of Figures 4 and 6 of Alotaibi & Smith 2017.
+    The panel follows Figures 4 and 6 of Alotaibi & Smith 2017.
     """
     settings, scene = relight.RelightSettings(size=relight.TILE_SIZE), Scene(face)
     flushed = edit_texture(texture, PigmentEdit(), PigmentEdit(_FLUSH))
@@ -103,11 +106,20 @@ def draw_maps_panel(
 
 
 def draw_pigments(
-    texture: SkinTexture, tops: tuple[float | None, float | None] = (None, None)
+    texture: SkinTexture, ends: tuple[float | None, float | None] = (None, None)
 ) -> list[Image.Image]:
-    """Draw tiles of melanin and hemoglobin."""
+    """Draw tiles of melanin and hemoglobin, on scales from 0 to the given ends."""
     mask = texture.mask.astype(np.float64)
     return [
-        draw_pigment_map("melanin", texture.f_mel, mask, tops[0]),
-        draw_pigment_map("hemoglobin", texture.f_blood, mask, tops[1]),
+        draw_pigment_map("melanin", texture.f_mel, mask, ends[0]),
+        draw_pigment_map("hemoglobin", texture.f_blood, mask, ends[1]),
     ]
+
+
+def choose_scale_ends(textures: Sequence[SkinTexture]) -> tuple[float, float]:
+    """Choose the ends of the scales of melanin and hemoglobin that several textures share."""
+    mel, blood = (
+        max(float(np.percentile(getattr(one, name)[one.mask], 99)) for one in textures)
+        for name in ("f_mel", "f_blood")
+    )
+    return _round_up(mel), _round_up(blood)

@@ -1,4 +1,4 @@
-"""Pictures of appearance models in the manner of the paper's Figures 7 and 8."""
+"""Figures of appearance models, like Figures 7 and 8 of Alotaibi & Smith 2017."""
 
 from collections.abc import Callable, Sequence
 from functools import partial
@@ -94,13 +94,12 @@ def draw_hybrid(
 ) -> UInt8[np.ndarray, "height width 3"]:
     """Draw the mean and the first components at -/+ some deviations, uint8 sRGB.
 
-    Melanin stands above, hemoglobin in the middle, and the appearance below, rendered or as a
-    texture.
+    The rows are melanin, hemoglobin, and the appearance, rendered or as a texture.
 
     Source:
         Figure 7 of Alotaibi & Smith 2017.
     """
-    captions, betas = _extreme_faces(model, deviations, components)
+    captions, betas = _choose_extreme_faces(model, deviations, components)
     textures = [model.texture(beta) for beta in betas]
     melanin = _draw_pigment("melanin", captions, [face.f_mel for face in textures], model.mask)
     blood = _draw_pigment("hemoglobin", captions, [face.f_blood for face in textures], model.mask)
@@ -116,11 +115,11 @@ def draw_linear(
     renderer: AlbedoRenderer | None = None,
 ) -> UInt8[np.ndarray, "height width 3"]:
     """Draw the mean and the first components of a linear model, uint8 sRGB."""
-    captions, betas = _extreme_faces(model, deviations, components)
+    captions, betas = _choose_extreme_faces(model, deviations, components)
     return draw_grid(_draw_appearances(model, captions, betas, renderer), len(betas))
 
 
-def _extreme_faces(
+def _choose_extreme_faces(
     model: AppearanceModel, deviations: float, components: int
 ) -> tuple[list[str], list[Float[np.ndarray, "components"]]]:
     most = len(model.statistics.variances)

@@ -18,7 +18,7 @@ from skinnet.pipeline._progress import compute_fingerprint, log
 
 
 def find_maps(places: list[Path]) -> list[Path]:
-    """Find the files of maps that are named, and those in the folders that are named."""
+    """List the given files of maps, and those in the given folders."""
     files: list[Path] = []
     for place in places:
         if not place.exists():
@@ -39,7 +39,7 @@ def find_maps(places: list[Path]) -> list[Path]:
 
 
 def _is_edited(file: Path) -> bool:
-    """Tell whether maps were made by edit-maps; an edited face is not another person."""
+    """Tell whether maps were made by edit-maps; an edited face is not another subject."""
     edited = file.name.endswith(f"_edited{MAPS_END}")
     if edited:
         log(f"{file} is an edited face and is left out.")
@@ -79,7 +79,7 @@ def read_mask(path: Path | None, size: int) -> Bool[np.ndarray, "size size"] | N
 
 
 def read_shape(maps: Path, modes: int) -> Float[np.ndarray, "modes"]:
-    """Read the shape coefficients of the fit beside some maps."""
+    """Read the shape coefficients of the fit that belongs to a file of maps."""
     alpha = load_fit(maps.with_name(maps.name.removesuffix(MAPS_END) + "_shape.npz")).alpha
     if len(alpha) > modes:
         raise InputError(

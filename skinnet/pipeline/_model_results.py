@@ -18,15 +18,15 @@ from skinnet.mesh.mesh_file import read_mesh
 from skinnet.pipeline import relight
 from skinnet.pipeline._fit_archive import load_fit
 from skinnet.pipeline._model_figures import AlbedoRenderer, draw_hybrid, draw_linear, plot_measures
-from skinnet.pipeline._output import MAPS_END
+from skinnet.pipeline._output import MAPS_END, add_end
 from skinnet.render.scene import Scene
 
 
 def make_renderer(files: list[Path]) -> AlbedoRenderer | None:
     """Make a renderer of the mean fitted face; None if a mesh or a fit is missing."""
     stems = [file.with_name(file.name.removesuffix(MAPS_END)) for file in files]
-    meshes = [stem.with_name(f"{stem.name}_face.obj") for stem in stems]
-    fits = [stem.with_name(f"{stem.name}_shape.npz") for stem in stems]
+    meshes = [add_end(stem, "_face.obj") for stem in stems]
+    fits = [add_end(stem, "_shape.npz") for stem in stems]
     if not all(file.is_file() for file in (*meshes, *fits)):
         return None
     archives = [load_fit(file) for file in fits]
@@ -46,7 +46,7 @@ def write_models(
     measures: list[Measures],
     renderer: AlbedoRenderer | None,
 ) -> None:
-    """Write models, their measures, and figures in the manner of Figures 7 and 8."""
+    """Write models, their measures, and figures like Figures 7 and 8 of the paper."""
     components = min(3, *(len(model.statistics.variances) for model in (hybrid, linear)))
     pictures = {
         "hybrid": draw_hybrid(hybrid, components=components, renderer=renderer),

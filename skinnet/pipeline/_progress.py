@@ -1,4 +1,4 @@
-"""The log, and the records by which finished work is found again."""
+"""The log, and records of finished steps, which are not repeated."""
 
 import hashlib
 import json
@@ -17,21 +17,21 @@ def log(text: str) -> None:
 
 
 def compute_fingerprint(*parts: object) -> str:
-    """Compute a short hash of the contents of files, of settings and of numbers."""
-    sum_ = hashlib.sha256()
+    """Compute a short hash of the contents of files, settings and numbers."""
+    digest = hashlib.sha256()
     for part in parts:
         if isinstance(part, Path):
             for file in sorted(part.rglob("*")) if part.is_dir() else [part]:
-                sum_.update(file.read_bytes() if file.is_file() else b"")
+                digest.update(file.read_bytes() if file.is_file() else b"")
         else:
             plain = asdict(part) if is_dataclass(part) and not isinstance(part, type) else part
-            sum_.update(json.dumps(plain, sort_keys=True, default=str).encode())
-        sum_.update(b"\0")
-    return sum_.hexdigest()[:16]
+            digest.update(json.dumps(plain, sort_keys=True, default=str).encode())
+        digest.update(b"\0")
+    return digest.hexdigest()[:16]
 
 
 def read_finished(record: Path, fingerprint: str, files: list[Path]) -> dict[str, Any] | None:
-    """Read the record of a stage if it was finished from the same inputs and has all its files."""
+    """Read the record of a step; None if its inputs have changed or a file is missing."""
     if not all(file.is_file() for file in [record, *files]):
         return None
     try:
@@ -42,7 +42,7 @@ def read_finished(record: Path, fingerprint: str, files: list[Path]) -> dict[str
 
 
 def write_record(path: Path, fingerprint: str, values: Mapping[str, Any]) -> dict[str, Any]:
-    """Write the record of a stage, last of its files, with the fingerprint of its inputs."""
+    """Write the record of a step, after its files, with the fingerprint of its inputs."""
     record = {"inputs": fingerprint, **values}
     write_text(path, json.dumps(record, indent=2, allow_nan=False) + "\n")
     return record

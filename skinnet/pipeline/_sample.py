@@ -11,9 +11,9 @@ from skinnet.appearance.maps_file import save_maps
 from skinnet.appearance.skin_texture import SkinTexture
 from skinnet.errors import InputError
 from skinnet.images.photograph import write_png
-from skinnet.inference.panel import _round_up, draw_grid, draw_picture
+from skinnet.inference.panel import draw_grid, draw_picture
 from skinnet.pipeline._build_model import MODEL_FOLDER
-from skinnet.pipeline._maps_writer import draw_pigments, show_albedo
+from skinnet.pipeline._maps_writer import choose_scale_ends, draw_pigments, show_albedo
 from skinnet.pipeline._output import MAPS_END, add_end, add_output, make_output_folder
 
 
@@ -23,7 +23,7 @@ def add_arguments(parser: ArgumentParser) -> None:
         "model", nargs="?", type=Path, default=MODEL_FOLDER / "hybrid.npz", help="A hybrid model."
     )
     parser.add_argument("-n", "--count", type=int, default=4, help="Number of faces.")
-    parser.add_argument("--seed", type=int, default=0, help="The same seed gives the same faces.")
+    parser.add_argument("--seed", type=int, default=0, help="Seed of the random faces.")
     parser.add_argument(
         "--spread",
         type=float,
@@ -61,15 +61,9 @@ def _draw_samples(
     textures: list[SkinTexture], albedos: list[UInt8[np.ndarray, "size size 3"]]
 ) -> UInt8[np.ndarray, "h w 3"]:
     """Draw melanin, hemoglobin and albedo of every face, one column each."""
-    ends = (_scale_end(textures, "f_mel"), _scale_end(textures, "f_blood"))
+    ends = choose_scale_ends(textures)
     columns = [
         [*draw_pigments(texture, ends), draw_picture(f"albedo {number:02}", albedo)]
         for number, (texture, albedo) in enumerate(zip(textures, albedos, strict=True))
     ]
     return draw_grid([tile for row in zip(*columns, strict=True) for tile in row], len(columns))
-
-
-def _scale_end(textures: list[SkinTexture], name: str) -> float:
-    return _round_up(
-        max(float(np.percentile(getattr(one, name)[one.mask], 99)) for one in textures)
-    )

@@ -1,4 +1,4 @@
-"""A scan with its texture, its landmarks, and the repairs that it needed."""
+"""Scans: their files, options, repairs and landmarks."""
 
 from collections.abc import Callable
 from dataclasses import dataclass, fields
@@ -30,11 +30,12 @@ class ScanOptions:
     """The shape model, and the files that belong to a scan.
 
     Args:
-        model: Shape model: ICT-FaceKit (folder or .npz), Basel Face Model (.mat, .h5), .npz of
-            our own, a folder of registered meshes; by default the embedded procedural face.
+        model: Shape model: ICT-FaceKit (folder or .npz), Basel Face Model (.mat, .h5),
+            skinnet's .npz, or a folder of registered meshes; by default the procedural face.
         model_landmarks: .json of names and vertex numbers, for a model without landmarks.
         landmarks: Points of the scan (.ljson, .csv, .json, .pp); by default NAME.ljson, NAME.pp,
-            NAME_landmarks.csv or .json beside it; without any, the face is detected from the front.
+            NAME_landmarks.csv or .json beside it. Without landmarks, the face is detected in a
+            picture from the front.
         texture: The scan's picture, if the mesh does not name it.
     """
 
@@ -59,14 +60,14 @@ class Scan:
 
 
 def load_scan(path: Path, model: ShapeModel, options: ScanOptions, textured: bool = False) -> Scan:
-    """Read, check and repair a scan; its landmarks are those given, those beside it, or none.
+    """Read, check and repair a scan. Its landmarks are those given, those beside it, or none.
 
     Raises:
-        InputError: If the scan cannot be repaired; names the file and the fault.
+        InputError: If the scan cannot be read or repaired, or its landmarks are wrong.
     """
     mesh = read_mesh(path, options.texture)
     marks = options.landmarks or next(
-        (file for file in _landmark_files(path) if file.is_file()), None
+        (file for file in _list_landmark_files(path) if file.is_file()), None
     )
     points = None if marks is None else read_landmarks(marks, mesh)
     checked = repair_mesh(mesh, textured)
@@ -83,7 +84,7 @@ def load_scan(path: Path, model: ShapeModel, options: ScanOptions, textured: boo
 def process_scans(
     paths: list[Path], options: ScanOptions, output: Path | None, action: Callable[[Path], object]
 ) -> int:
-    """Process every scan and log the errors of bad ones; return 2 if any was bad, else 0.
+    """Process every scan and log errors; return 2 if there was an error, else 0.
 
     Raises:
         InputError: If one file of landmarks or one texture is given for several scans, or two scans
@@ -99,7 +100,8 @@ def process_scans(
     twice = [path for path, name in zip(paths, names, strict=True) if names.count(name) > 1]
     if twice:
         raise InputError(
-            f"{twice[0]} and {twice[1]} would write the same files; rename one, or run them apart."
+            f"{twice[0]} and {twice[1]} would write the same files; rename one, or run each "
+            "with its own -o."
         )
     code = 0
     for path in paths:
@@ -111,13 +113,13 @@ def process_scans(
     return code
 
 
-def _landmark_files(path: Path) -> list[Path]:
+def _list_landmark_files(path: Path) -> list[Path]:
     """List the files that may hold the landmarks of a scan."""
     return [path.with_name(path.stem + end) for end in _LANDMARK_ENDS]
 
 
-def stem_of_output(scan: Path, output: Path | None) -> Path:
-    """Make the output folder; the names of a scan's files begin with FOLDER/NAME."""
+def make_output_stem(scan: Path, output: Path | None) -> Path:
+    """Make the output folder, and FOLDER/NAME with which the names of a scan's files begin."""
     return make_output_folder(output or scan.parent / OUTPUT) / scan.stem
 
 

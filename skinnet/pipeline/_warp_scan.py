@@ -5,6 +5,7 @@ import numpy as np
 from skinnet.errors import InputError
 from skinnet.files import write_atomically
 from skinnet.pipeline._fit_shape import FittedScan
+from skinnet.pipeline._output import add_end
 from skinnet.pipeline._progress import compute_fingerprint, log, read_finished, write_record
 from skinnet.pipeline.texture_space import WarpSettings
 from skinnet.shape.model import ShapeModel
@@ -13,7 +14,7 @@ from skinnet.texture.warp import TextureSpace, WarpedTexture
 
 
 def make_texture_space(model: ShapeModel, size: int) -> TextureSpace:
-    """Make the texels of an embedded model."""
+    """Make the texture space of an embedded model."""
     assert model.uv is not None and model.uv_triangles is not None  # `embed_model` gives both
     return TextureSpace(model.uv, model.uv_triangles, size)
 
@@ -21,10 +22,8 @@ def make_texture_space(model: ShapeModel, size: int) -> TextureSpace:
 def warp_scan(
     fitted: FittedScan, model: ShapeModel, space: TextureSpace, settings: WarpSettings
 ) -> WarpedTexture:
-    """Warp a scan's texture into the model's space, or read the result of the same inputs."""
-    file, record = (
-        fitted.stem.with_name(f"{fitted.stem.name}_warp.{end}") for end in ("npz", "json")
-    )
+    """Warp a scan's texture into the model's space, or read the earlier result of these inputs."""
+    file, record = (add_end(fitted.stem, end) for end in ("_warp.npz", "_warp.json"))
     fingerprint = compute_fingerprint(fitted.fingerprint, settings, space.uv.tobytes().hex())
     if read_finished(record, fingerprint, [file]):
         with np.load(file, allow_pickle=False) as file_:

@@ -15,13 +15,13 @@ def run_verb(verb: str, arguments: Sequence[str], description: str) -> int:
     Args:
         verb: fit-shape, maps, build-model, sample or edit-maps.
         arguments: Options of the verb, as on the command line.
-        description: Describes the verb in its help.
+        description: What the verb does, for its help; a sentence without its end.
 
     Returns:
-        0, or 2 if one of several scans was bad.
+        The exit code: 0, or 2 if one of several scans could not be used.
 
     Raises:
-        InputError: If an option or a file is bad.
+        InputError: If an option or a file cannot be used.
 
     Example:
         >>> run_verb("sample", ["--count=0"], "random faces from a model")

@@ -1,4 +1,4 @@
-"""The pose of an upright face that looks along +z, found without landmarks."""
+"""The pose of an upright face whose front is towards +z, found without landmarks."""
 
 from itertools import product
 
@@ -21,19 +21,22 @@ PIXELS = 500
 """Height and width of the picture in which the face is detected."""
 
 _LIGHT = np.array([0.3, 0.5, 0.8])
+"""Vector to the light of that picture."""
+
 _SHIFTS, _SIZES = (-0.1, -0.05, 0.0, 0.05, 0.1), (0.9, 1.0, 1.1)
+"""Vertical shifts in widths of the face, and scales, of the poses that are tried."""
 
 
 def find_initial_pose(model: ShapeModel, scan: Mesh) -> Similarity:
     """Find the pose of the mean face on a scan from face detections in pictures of both.
 
     Both are rendered from the front as grey plaster, so a texture has no influence. The detection
-    is accurate to a tenth of a face. Of several poses around it, the one with the best rigid fit is
-    taken.
+    is accurate to a tenth of the face's size. Of several poses near it, the one with the best rigid
+    fit is chosen.
 
     Args:
-        model: The shape model, upright and looking along +z.
-        scan: The scan, upright and looking along +z, in any unit.
+        model: The shape model, upright, its front towards +z.
+        scan: The scan, upright, its front towards +z, in any unit.
 
     Returns:
         The pose, from the model's frame and unit to the scan's: the `start` for `register`.
@@ -62,11 +65,11 @@ def _locate_face(mesh: Mesh) -> tuple[Float[np.ndarray, "3"], float]:
     eye = np.array([*(low + high)[:2] / 2, high[2] + 1 / scale])
     view = OrthographicView((PIXELS, PIXELS), eye, np.eye(3), scale)
     buffers = trace_geometry(Scene(mesh), view)
-    box = find_face(_render_plaster(buffers))
+    box = find_face(_shade_plaster(buffers))
     if box is None:
         raise NoFaceError(
-            f"{mesh.name} shows no face from the front; rotate it upright with the face along +z, "
-            "or give landmarks."
+            f"No face was found on {mesh.name} from the front; rotate it upright, with the face "
+            "towards +z, or give landmarks."
         )
     column, row = (box.left + box.right) / 2, (box.top + box.bottom) / 2
     width = box.width / scale
@@ -75,7 +78,7 @@ def _locate_face(mesh: Mesh) -> tuple[Float[np.ndarray, "3"], float]:
     return np.array([*middle, buffers.position[near, 2].max()]), width
 
 
-def _render_plaster(buffers: GeometryBuffers) -> UInt8[np.ndarray, "height width 3"]:
+def _shade_plaster(buffers: GeometryBuffers) -> UInt8[np.ndarray, "height width 3"]:
     shade = 200 * (0.35 + 0.65 * buffers.normal @ _LIGHT).clip(0, 1)
     picture = np.full(buffers.hit.shape, 200, np.uint8)
     picture[buffers.hit] = shade.astype(np.uint8)

@@ -29,12 +29,12 @@ class RelightSettings:
         strengths: Radiance of a white surface that faces the lamp, for each lamp.
         width: Angular diameter of the lamps in degrees; 0 gives hard shadows.
         above: Radiance of the sky straight above.
-        below: Radiance from straight below.
+        below: Radiance of the sky straight below.
         harmonics: Nine spherical-harmonic coefficients of grey light that replaces the sky.
         shadows: Whether the face casts shadows on itself.
-        gloss: Whether it has highlights.
+        gloss: Whether the skin has highlights.
         yaw: Angle in degrees by which the camera moves around to the face's left.
-        pitch: Angle in degrees by which it moves up.
+        pitch: Angle in degrees by which the camera moves up.
         size: Pixels along a side of the picture.
 
     Raises:
@@ -72,7 +72,11 @@ class RelightSettings:
             raise InputError(f"size is a number of pixels from 16 to 8192; got {self.size}.")
 
     def lights(self) -> Sequence[Light]:
-        """Make the lamps and the sky."""
+        """Make the lamps and the sky.
+
+        Returns:
+            The lights for `render`.
+        """
         lamps = [
             DirectionalLight(direction, strength, self.width)
             for direction, strength in zip(self.lamps, self.strengths, strict=True)
@@ -87,8 +91,8 @@ class RelightSettings:
         """Render a face.
 
         Args:
-            mesh: The face, upright, with texture coordinates; it looks along +z. A `Scene` of it
-                is shared between several pictures.
+            mesh: The face, upright, its front towards +z, with texture coordinates; or a `Scene` of
+                it, to share between several pictures.
             albedo: Linear RGB over the texture coordinates.
 
         Returns:

@@ -1,4 +1,4 @@
-"""The parser of every command that takes settings from YAML and flags."""
+"""The parser of the commands that take settings from YAML and flags."""
 
 import re
 from collections.abc import Mapping
@@ -10,11 +10,11 @@ from skinnet.errors import InputError
 
 
 class SentenceParser(ArgumentParser):
-    """Reports an error in one sentence, without the usage of all options.
+    """A parser that reports an error in one sentence, without listing all options.
 
     `help_command` lists the options; by default it is the parser's program with `--help`.
-    `renamed` maps keys and class names of earlier versions to those of today. An error about an old
-    one then names the new one.
+    `renamed` maps keys and class names of earlier versions to their present names. An error about
+    an old name then gives the new one.
 
     Raises:
         InputError: Instead of a message on standard error and the end of the process.

@@ -16,13 +16,13 @@ def invert_texture(
     """Invert the colours of a texture to pigments and an offset.
 
     Args:
-        warped: Linear RGB in the model's texture space, and the texels that are known.
-        exposure: Factor by which its colours are multiplied first.
+        warped: Linear RGB in the model's texture space, and the mask of the known texels.
+        exposure: Factor by which its colours are multiplied before the inversion.
         colours: Calibrated light and camera.
         name: Name of the texture in error messages.
 
     Returns:
-        The maps, and the share of known texels whose colour is not one of skin.
+        The maps, and the share of known texels whose colour is off the skin manifold.
 
     Source:
         Section 4.4 of Alotaibi & Smith 2017.
@@ -36,7 +36,7 @@ def invert_texture(
         whole[mask] = part.numpy()
     f_mel, f_blood, _ = maps
     pigments = SkinTexture(f_mel, f_blood, np.zeros((*mask.shape, 3), np.float32), mask, name)
-    # The offset refers to the table that decodes the maps, so the texture is restored exactly.
+    # The offset is relative to the table that decodes the maps, so these give the exact texture.
     offset = np.zeros((*mask.shape, 3), np.float32)
     offset[mask] = rgb - pigments.albedo(colours.colour)[mask]
     return replace(pigments, offset=offset), float(1 - inverted.on_manifold.float().mean())

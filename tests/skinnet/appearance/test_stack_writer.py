@@ -56,7 +56,7 @@ def test_another_stack_is_not_written_over(
         (fewer, colour, "people"),
         (persons, others, "people"),
     ):
-        with pytest.raises(InputError, match="choose another folder or delete it"):
+        with pytest.raises(InputError, match="choose another folder or delete this one"):
             write_stack(stack.folder, subjects, seen, inputs)
     assert (stack.folder / "features.npy").read_bytes() == before
 

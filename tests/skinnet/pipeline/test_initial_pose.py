@@ -22,5 +22,7 @@ def test_an_upright_face_is_found_at_any_size_and_place() -> None:
 def test_an_object_without_a_face_is_refused() -> None:
     ball = trimesh.creation.icosphere(subdivisions=3)
     mesh = Mesh(np.array(ball.vertices), np.array(ball.faces), name="a ball")
-    with pytest.raises(NoFaceError, match="a ball shows no face from the front; rotate it upright"):
+    with pytest.raises(
+        NoFaceError, match="No face was found on a ball from the front; rotate it upright"
+    ):
         find_initial_pose(load_shape_model(), mesh)
