@@ -7,7 +7,7 @@ EMPTY = 1e-12
 """A triangle whose height is less than about this share of its length counts as without area."""
 
 
-def barycentric_gradients(
+def compute_barycentric_gradients(
     places: Float[np.ndarray, "triangles 3 2"],
 ) -> Float[np.ndarray, "triangles 3 2"]:
     """Compute the gradients along x and y of barycentric coordinate k; nan without an area."""

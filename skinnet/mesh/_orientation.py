@@ -7,7 +7,7 @@ from jaxtyping import Bool, Float, Int
 from scipy.sparse import coo_array
 from scipy.sparse.csgraph import connected_components
 
-from skinnet.mesh._topology import edge_keys, half_edges
+from skinnet.mesh._topology import compute_edge_keys, list_half_edges
 
 _Vertices = Float[np.ndarray, "vertices 3"]
 _Triangles = Int[np.ndarray, "triangles 3"]
@@ -24,8 +24,8 @@ class AdjacentFaces(NamedTuple):
 
 def pair_adjacent_faces(triangles: _Triangles) -> AdjacentFaces:
     """Find the pairs of triangles with a common edge; an edge may have two triangles at most."""
-    edges = half_edges(triangles)
-    keys = edge_keys(edges, int(triangles.max()) + 1)
+    edges = list_half_edges(triangles)
+    keys = compute_edge_keys(edges, int(triangles.max()) + 1)
     order = np.argsort(keys, kind="stable")
     pair = np.flatnonzero(keys[order][1:] == keys[order][:-1])
     one, two = order[pair], order[pair + 1]
@@ -39,15 +39,17 @@ def label_face_components(triangles: _Triangles) -> Int[np.ndarray, "triangles"]
     return np.asarray(connected_components(links, directed=False)[1])
 
 
-def area_vectors(vertices: _Vertices, triangles: _Triangles) -> Float[np.ndarray, "triangles 3"]:
+def compute_area_vectors(
+    vertices: _Vertices, triangles: _Triangles
+) -> Float[np.ndarray, "triangles 3"]:
     """Compute the normals of triangles, each as long as the area of its triangle."""
     a, b, c = np.moveaxis(vertices[triangles].astype(np.float64), 1, 0)
     return np.cross(b - a, c - a) / 2
 
 
-def areas(vertices: _Vertices, triangles: _Triangles) -> Float[np.ndarray, "triangles"]:
+def compute_areas(vertices: _Vertices, triangles: _Triangles) -> Float[np.ndarray, "triangles"]:
     """Compute the areas of triangles."""
-    return np.asarray(np.linalg.norm(area_vectors(vertices, triangles), axis=1))
+    return np.asarray(np.linalg.norm(compute_area_vectors(vertices, triangles), axis=1))
 
 
 def flip_triangles(triangles: _Triangles, flipped: _FaceMask) -> _Triangles:
@@ -74,14 +76,14 @@ def find_inconsistent_faces(vertices: _Vertices, triangles: _Triangles) -> _Face
     links = coo_array((np.ones(len(rows), bool), (rows, columns)), (2 * count, 2 * count))
     label = connected_components(links, directed=False)[1]
     as_is, other = label[:count], label[count:]
-    weight = np.bincount(as_is, areas(vertices, triangles), label.max() + 1)
+    weight = np.bincount(as_is, compute_areas(vertices, triangles), label.max() + 1)
     tie = weight[other] == weight[as_is]
     return np.asarray((weight[other] > weight[as_is]) | tie & (other < as_is))
 
 
 def is_inside_out(vertices: _Vertices, triangles: _Triangles) -> bool:
     """Tell whether the normals of a closed or open surface point inwards on average."""
-    vectors = area_vectors(vertices, triangles)
+    vectors = compute_area_vectors(vertices, triangles)
     centres = vertices[triangles].mean(1)
     middle = np.average(centres, 0, np.linalg.norm(vectors, axis=1))
     return float((vectors * (centres - middle)).sum()) < 0

@@ -10,12 +10,12 @@ from skinnet.errors import InputError
 _Triangles = Int[np.ndarray, "triangles 3"]
 
 
-def half_edges(triangles: _Triangles) -> Int[np.ndarray, "halves 2"]:
+def list_half_edges(triangles: _Triangles) -> Int[np.ndarray, "halves 2"]:
     """List the directed edges of all triangles; row 3 i + k starts at corner k of triangle i."""
     return np.stack([triangles, np.roll(triangles, -1, 1)], -1).reshape(-1, 2)
 
 
-def edge_keys(
+def compute_edge_keys(
     edges: Int[np.ndarray, "edges 2"], vertex_count: int, directed: bool = False
 ) -> Int[np.ndarray, "edges"]:
     """Compute a number that identifies each edge, the same in both directions unless `directed`."""
@@ -23,23 +23,23 @@ def edge_keys(
     return np.asarray(ends[:, 0].astype(np.int64) * vertex_count + ends[:, 1])
 
 
-def boundary(triangles: _Triangles) -> Bool[np.ndarray, "triangles 3"]:
+def find_boundary_edges(triangles: _Triangles) -> Bool[np.ndarray, "triangles 3"]:
     """Tell whether edge k of each triangle, from corner k to k + 1, is in no other triangle."""
-    keys = edge_keys(half_edges(triangles), int(triangles.max(initial=-1)) + 1)
+    keys = compute_edge_keys(list_half_edges(triangles), int(triangles.max(initial=-1)) + 1)
     _, place, count = np.unique(keys, return_inverse=True, return_counts=True)
     return np.asarray(count[place] == 1).reshape(-1, 3)
 
 
-def boundary_loops(triangles: _Triangles) -> list[Int[np.ndarray, "loop"]]:
+def list_boundary_loops(triangles: _Triangles) -> list[Int[np.ndarray, "loop"]]:
     """List the vertices of each boundary loop, in the direction of the triangles' edges.
 
     Raises:
         InputError: If the mesh is not an oriented manifold: an edge has three triangles or two of
             opposite orientation, or two boundaries touch in a vertex.
     """
-    edges = half_edges(triangles)
+    edges = list_half_edges(triangles)
     _check_manifold(edges)
-    start, end = edges[boundary(triangles).ravel()].T
+    start, end = edges[find_boundary_edges(triangles).ravel()].T
     if len(np.unique(start)) < len(start):
         touching = np.flatnonzero(np.bincount(start) > 1)
         raise InputError(
@@ -60,7 +60,7 @@ def boundary_loops(triangles: _Triangles) -> list[Int[np.ndarray, "loop"]]:
 
 def label_components(triangles: _Triangles, vertex_count: int) -> Int[np.ndarray, "vertices"]:
     """Number each vertex by its component; triangles connect their vertices."""
-    start, end = half_edges(triangles).T
+    start, end = list_half_edges(triangles).T
     links = coo_array((np.ones(len(start), bool), (start, end)), (vertex_count, vertex_count))
     return np.asarray(connected_components(links, directed=False)[1])
 
@@ -79,7 +79,7 @@ def weld(vertices: Float[np.ndarray, "vertices 3"]) -> Int[np.ndarray, "vertices
 
 def _check_manifold(edges: Int[np.ndarray, "halves 2"]) -> None:
     count = int(edges.max(initial=-1)) + 1
-    keys, times = np.unique(edge_keys(edges, count, directed=True), return_counts=True)
+    keys, times = np.unique(compute_edge_keys(edges, count, directed=True), return_counts=True)
     if (times > 1).any():
         a, b = divmod(int(keys[times > 1][0]), count)
         raise InputError(

@@ -5,7 +5,7 @@ from typing import NamedTuple
 import numpy as np
 from jaxtyping import Float, Int
 
-from skinnet.mesh._barycentric import barycentric_gradients
+from skinnet.mesh._barycentric import compute_barycentric_gradients
 
 _SLACK = 1e-9
 """Triangles grow by this many texels, so that rounding opens no gap between neighbours."""
@@ -60,7 +60,7 @@ def rasterise(corners: Float[np.ndarray, "triangles 3 2"], size: int) -> Raster:
     """
     # In texels, x along columns and y along rows, so that centres lie at whole numbers.
     places = (corners * [1, -1] + [0, 1]) * size - 0.5
-    gradients = barycentric_gradients(places)
+    gradients = compute_barycentric_gradients(places)
     spans = _find_spans(places, gradients, size)
     span = np.repeat(np.arange(len(spans.row)), spans.width)
     starts = np.cumsum(spans.width) - spans.width

@@ -8,14 +8,14 @@ from jaxtyping import Bool, Float, Int
 
 from skinnet.errors import InputError
 from skinnet.mesh._orientation import (
-    areas,
+    compute_areas,
     find_inconsistent_faces,
     flip_triangles,
     is_inside_out,
     label_face_components,
 )
 from skinnet.mesh._texture_atlas import wrap_coordinates
-from skinnet.mesh._topology import edge_keys, half_edges
+from skinnet.mesh._topology import compute_edge_keys, list_half_edges
 from skinnet.mesh.mesh import Mesh
 
 DAMAGED = 0.1
@@ -174,7 +174,7 @@ def _remove_infinite_vertices(mesh: Mesh) -> RepairedMesh:
 
 
 def _remove_flat_faces(mesh: Mesh) -> RepairedMesh:
-    area = areas(mesh.vertices, mesh.triangles)
+    area = compute_areas(mesh.vertices, mesh.triangles)
     flat = area <= 1e-12 * area.max()
     if flat.mean() > DAMAGED:
         raise InputError(
@@ -193,8 +193,8 @@ def _remove_repeated_faces(mesh: Mesh) -> RepairedMesh:
 
 def _remove_non_manifold_faces(mesh: Mesh) -> RepairedMesh:
     """Keep the two largest faces at every edge; faces that do not belong there are small."""
-    area = areas(mesh.vertices, mesh.triangles)
-    keys = edge_keys(half_edges(mesh.triangles), len(mesh.vertices))
+    area = compute_areas(mesh.vertices, mesh.triangles)
+    keys = compute_edge_keys(list_half_edges(mesh.triangles), len(mesh.vertices))
     order = np.lexsort([-np.repeat(area, 3), keys])
     starts = np.flatnonzero(np.diff(keys[order], prepend=-1))
     count = np.diff(starts, append=len(keys))
@@ -210,7 +210,7 @@ def _remove_non_manifold_faces(mesh: Mesh) -> RepairedMesh:
 
 def _remove_small_components(mesh: Mesh) -> RepairedMesh:
     label = label_face_components(mesh.triangles)
-    area = np.bincount(label, areas(mesh.vertices, mesh.triangles))
+    area = np.bincount(label, compute_areas(mesh.vertices, mesh.triangles))
     share = area / area.sum()
     if share.max() < 0.5:
         raise InputError(

@@ -4,7 +4,7 @@ import numpy as np
 from jaxtyping import Float
 
 
-def view_axes(yaw: float, pitch: float = 0.0) -> Float[np.ndarray, "3 3"]:
+def compute_view_axes(yaw: float, pitch: float = 0.0) -> Float[np.ndarray, "3 3"]:
     """Compute the right, up and backward axes of a view of the origin.
 
     `yaw` and `pitch` are angles in degrees by which the viewpoint moves to the face's left and up.

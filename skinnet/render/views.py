@@ -7,7 +7,7 @@ import numpy as np
 from jaxtyping import Float
 
 from skinnet.errors import InputError
-from skinnet.render._view_axes import view_axes
+from skinnet.render._view_axes import compute_view_axes
 
 _Rays = tuple[Float[np.ndarray, "rays 3"], Float[np.ndarray, "rays 3"]]
 """Origins and unit directions of rays, row by row from the top left of the picture."""
@@ -180,7 +180,7 @@ def frame_face(
     height, width = size
     if min(size) < 1:
         raise InputError(f"A picture has at least one pixel a side; got {height} x {width}.")
-    rotation = view_axes(yaw, pitch)
+    rotation = compute_view_axes(yaw, pitch)
     focal = height / 2 / np.tan(np.deg2rad(field_of_view) / 2)
     low, high = (vertices @ rotation.T).min(0), (vertices @ rotation.T).max(0)
     middle = (low + high) / 2

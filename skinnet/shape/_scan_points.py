@@ -8,7 +8,7 @@ from scipy.spatial import cKDTree
 from trimesh.remesh import subdivide
 
 from skinnet.errors import InputError
-from skinnet.mesh._topology import boundary, half_edges
+from skinnet.mesh._topology import find_boundary_edges, list_half_edges
 from skinnet.mesh.mesh import Mesh
 from skinnet.mesh.normals import compute_vertex_normals
 
@@ -55,7 +55,7 @@ class ScanPoints:
         self.normals = compute_vertex_normals(vertices, triangles)[used]
         self.tree = cKDTree(self.points)
         edge = np.zeros(len(vertices), bool)
-        edge[half_edges(triangles)[boundary(triangles).ravel()].ravel()] = True
+        edge[list_half_edges(triangles)[find_boundary_edges(triangles).ravel()].ravel()] = True
         self.on_boundary = edge[used]
 
     def find_nearest(self, queries: Float[np.ndarray, "queries 3"]) -> NearestPoints:

@@ -5,11 +5,11 @@ from jaxtyping import Float, Int
 
 from skinnet.errors import InputError
 from skinnet.mesh._topology import (
-    boundary,
-    boundary_loops,
-    edge_keys,
-    half_edges,
+    compute_edge_keys,
+    find_boundary_edges,
     label_components,
+    list_boundary_loops,
+    list_half_edges,
 )
 from skinnet.mesh._vectors import measure_edges
 
@@ -55,7 +55,7 @@ def check_one_piece(
 def find_rim_and_holes(
     vertices: Float[np.ndarray, "vertices 3"], triangles: Int[np.ndarray, "triangles 3"]
 ) -> tuple[Int[np.ndarray, "rim"], list[Int[np.ndarray, "_"]]]:
-    loops = boundary_loops(triangles)
+    loops = list_boundary_loops(triangles)
     if not loops:
         raise InputError("The mesh to embed is closed; cut it open, for example at the neck.")
     loops.sort(key=lambda loop: -measure_edges(vertices[loop]).sum())
@@ -73,7 +73,7 @@ def fill_holes(
 
 
 def check_disc(triangles: Int[np.ndarray, "triangles 3"], count: int) -> None:
-    edges = len(np.unique(edge_keys(half_edges(triangles), count)))
+    edges = len(np.unique(compute_edge_keys(list_half_edges(triangles), count)))
     euler = count - edges + len(triangles)
     if euler != 1:
         raise InputError(
@@ -113,15 +113,19 @@ def add_mirror_images(
     """
     count = len(mirror)
     while True:
-        edges = half_edges(triangles)
-        open_ = boundary(triangles)
-        keys = edge_keys(edges, count, directed=True)
+        edges = list_half_edges(triangles)
+        open_ = find_boundary_edges(triangles)
+        keys = compute_edge_keys(edges, count, directed=True)
         rim = keys[open_.ravel()]
-        lone = open_ & ~np.isin(edge_keys(mirror[edges[:, ::-1]], count, True), rim).reshape(-1, 3)
+        lone = open_ & ~np.isin(
+            compute_edge_keys(mirror[edges[:, ::-1]], count, True), rim
+        ).reshape(-1, 3)
         images = mirror[triangles[lone.any(1)]][:, ::-1]
-        sides = half_edges(images)
-        new = ~np.isin(edge_keys(sides, count, True), keys).reshape(-1, 3).any(1)
-        joined = np.isin(edge_keys(sides[:, ::-1], count, True), rim).reshape(-1, 3).sum(1) == 2
+        sides = list_half_edges(images)
+        new = ~np.isin(compute_edge_keys(sides, count, True), keys).reshape(-1, 3).any(1)
+        joined = (
+            np.isin(compute_edge_keys(sides[:, ::-1], count, True), rim).reshape(-1, 3).sum(1) == 2
+        )
         if not (new & joined).any():
             return triangles
         triangles = np.concatenate([triangles, images[new & joined]])

@@ -8,7 +8,7 @@ from jaxtyping import Bool, Float, Int
 from skinnet.errors import InputError
 from skinnet.images.srgb import srgb_to_linear
 from skinnet.mesh._barycentric import interpolate
-from skinnet.mesh._topology import boundary, label_components, weld
+from skinnet.mesh._topology import find_boundary_edges, label_components, weld
 from skinnet.mesh._vectors import measure_edges, normalise
 from skinnet.mesh.closest_point import ClosestPoints, TriangleTree
 from skinnet.mesh.mesh import Mesh
@@ -116,7 +116,7 @@ class _TexturedScan:
         islands = label_components(scan.uv_triangles, len(scan.uv))
         self.island = islands[scan.uv_triangles[:, 0]]
         welded = weld(scan.vertices)[scan.triangles]
-        self.boundary = boundary(welded)
+        self.boundary = find_boundary_edges(welded)
         self.boundary_vertices = np.isin(welded, welded[self.boundary])
         self.boundary_vertices |= np.isin(welded, np.roll(welded, -1, 1)[self.boundary])
         self.density = _compute_density(scan.vertices[scan.triangles], scan.uv[scan.uv_triangles])

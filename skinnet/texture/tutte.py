@@ -10,7 +10,7 @@ from scipy.sparse import coo_array, diags_array
 from scipy.sparse.linalg import splu
 
 from skinnet.errors import InputError
-from skinnet.mesh._topology import edge_keys, half_edges
+from skinnet.mesh._topology import compute_edge_keys, list_half_edges
 from skinnet.mesh._vectors import measure_edges
 from skinnet.texture._disc import (
     add_mirror_images,
@@ -139,9 +139,9 @@ def _compute_weights(
 ) -> tuple[Int[np.ndarray, "edges 2"], Float[np.ndarray, "edges"]]:
     """List edges and their mirror images, with the mean of both weights."""
     count = len(points)
-    edges = half_edges(triangles)
+    edges = list_half_edges(triangles)
     weights = _compute_cotangents(points[triangles]).ravel() / 2
-    own, images = edge_keys(edges, count), edge_keys(partner[edges], count)
+    own, images = compute_edge_keys(edges, count), compute_edge_keys(partner[edges], count)
     keys, place = np.unique(np.concatenate([own, images]), return_inverse=True)
     total = np.bincount(place, np.tile(weights, 2))
     lone = ~(np.isin(keys, own) & np.isin(keys, images))

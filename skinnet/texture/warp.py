@@ -7,7 +7,7 @@ import numpy as np
 from jaxtyping import Bool, Float, Int, Shaped
 
 from skinnet.errors import InputError
-from skinnet.mesh._barycentric import barycentric_gradients
+from skinnet.mesh._barycentric import compute_barycentric_gradients
 from skinnet.mesh.raster import rasterise
 from skinnet.mesh.sampling import sample_bilinear
 
@@ -186,7 +186,7 @@ def _compute_jacobian(
     space: TextureSpace, coordinates: Float[np.ndarray, "triangles 3 2"]
 ) -> Float[np.ndarray, "triangles 2 2"]:
     """Compute the change of the picture's u and v (last axis) per texel along columns and rows."""
-    change = barycentric_gradients(space.uv[space.triangles] * [1, -1]) / space.size
+    change = compute_barycentric_gradients(space.uv[space.triangles] * [1, -1]) / space.size
     return np.asarray(np.nan_to_num(np.einsum("tkd,tkx->tdx", change, coordinates)))
 
 

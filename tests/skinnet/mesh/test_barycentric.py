@@ -2,12 +2,12 @@
 
 import numpy as np
 
-from skinnet.mesh._barycentric import barycentric_gradients, interpolate
+from skinnet.mesh._barycentric import compute_barycentric_gradients, interpolate
 
 
 def test_a_step_to_a_corner_changes_its_coordinate_by_one() -> None:
     places = np.random.default_rng(0).normal(size=(20, 3, 2))
-    gradients = barycentric_gradients(places)
+    gradients = compute_barycentric_gradients(places)
     for start in range(3):
         for end in range(3):
             step = places[:, end] - places[:, start]
@@ -17,7 +17,7 @@ def test_a_step_to_a_corner_changes_its_coordinate_by_one() -> None:
 
 def test_a_triangle_without_an_area_has_no_gradients() -> None:
     line = np.array([[[0.0, 0], [1, 1], [2, 2]], [[3, 3], [3, 3], [3, 3]]])
-    assert np.isnan(barycentric_gradients(line)).all()
+    assert np.isnan(compute_barycentric_gradients(line)).all()
 
 
 def test_values_are_interpolated_between_corners() -> None:

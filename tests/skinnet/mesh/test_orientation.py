@@ -6,8 +6,8 @@ from small_meshes import dome, moebius_strip
 from trimesh.creation import icosphere
 
 from skinnet.mesh._orientation import (
-    area_vectors,
-    areas,
+    compute_area_vectors,
+    compute_areas,
     find_inconsistent_faces,
     flip_triangles,
     is_inside_out,
@@ -48,8 +48,8 @@ def test_inside_out_holds_for_closed_and_open_surfaces() -> None:
 
 def test_area_vectors_of_a_closed_surface_add_up_to_nothing() -> None:
     vertices, triangles = np.array(BALL.vertices), np.array(BALL.faces)
-    assert np.allclose(area_vectors(vertices, triangles).sum(0), 0, atol=1e-12)
-    assert areas(vertices, triangles).sum() == pytest.approx(BALL.area)
+    assert np.allclose(compute_area_vectors(vertices, triangles).sum(0), 0, atol=1e-12)
+    assert compute_areas(vertices, triangles).sum() == pytest.approx(BALL.area)
 
 
 def test_components_of_faces_need_a_common_edge() -> None:

@@ -8,7 +8,7 @@ from skinnet.errors import InputError
 from skinnet.mesh._vectors import normalise
 from skinnet.mesh.mesh import Mesh
 from skinnet.render._shading import EXPONENT, shade
-from skinnet.render._view_axes import view_axes
+from skinnet.render._view_axes import compute_view_axes
 from skinnet.render.lights import DirectionalLight, SphericalHarmonics
 from skinnet.render.views import OrthographicView
 from skinnet.render.visibility import trace_geometry
@@ -30,7 +30,7 @@ def plane() -> Mesh:
 
 
 def above(size: int, scale: float) -> OrthographicView:
-    return OrthographicView((size, size), np.array([0.0, 0, 10]), view_axes(0.0), scale)
+    return OrthographicView((size, size), np.array([0.0, 0, 10]), compute_view_axes(0.0), scale)
 
 
 def test_a_ball_in_even_light_of_radiance_l_sends_out_albedo_times_l() -> None:
@@ -86,7 +86,7 @@ def test_a_highlight_stands_halfway_and_is_of_its_strength() -> None:
 
 
 def test_samples_are_averaged_in_linear_light() -> None:
-    view = OrthographicView((4, 4), np.array([0.25, 0.25, 10.0]), view_axes(0.0), 2.0)
+    view = OrthographicView((4, 4), np.array([0.25, 0.25, 10.0]), compute_view_axes(0.0), 2.0)
     shaded = shade(trace_geometry(plane(), view, samples=4), WHITE, [even(0.5)])
     # The square ends at x = 1, a quarter of the way through a pixel of half a unit.
     assert shaded.alpha[2].tolist() == [1, 1, 1, 0.5] or shaded.alpha[2, 3] == pytest.approx(0.5)

@@ -6,14 +6,14 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from skinnet.errors import InputError
-from skinnet.render._view_axes import view_axes
+from skinnet.render._view_axes import compute_view_axes
 from skinnet.render.views import OrthographicView, PerspectiveView, View, frame_face
 
 HEAD = np.random.default_rng(0).normal(size=(500, 3)) * [70, 100, 80] + [3, -20, 40]
 
 
 def views() -> list[View]:
-    axes = view_axes(25.0, 10.0)
+    axes = compute_view_axes(25.0, 10.0)
     return [
         PerspectiveView((30, 40), 5 * axes[2], axes, 55.0),
         OrthographicView((30, 40), 5 * axes[2], axes, 12.0),

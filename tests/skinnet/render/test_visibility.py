@@ -6,7 +6,7 @@ from trimesh.creation import box, icosphere
 
 from skinnet.mesh._vectors import normalise
 from skinnet.mesh.mesh import Mesh
-from skinnet.render._view_axes import view_axes
+from skinnet.render._view_axes import compute_view_axes
 from skinnet.render.views import OrthographicView, PerspectiveView
 from skinnet.render.visibility import trace_geometry
 
@@ -28,14 +28,14 @@ def join_meshes(*meshes: Mesh) -> Mesh:
 
 
 def from_above(size: int = 40, scale: float = 10.0) -> OrthographicView:
-    return OrthographicView((size, size), np.array([0.0, 0, 10]), view_axes(0.0), scale)
+    return OrthographicView((size, size), np.array([0.0, 0, 10]), compute_view_axes(0.0), scale)
 
 
 @pytest.mark.parametrize("far", [0.0, 1e4])
 def test_buffers_hold_the_visible_surface(far: float) -> None:
     mesh = square(1.5)
     mesh = Mesh(mesh.vertices + [far, 0, 0], mesh.triangles, mesh.uv, mesh.uv_triangles)
-    view = PerspectiveView((30, 30), np.array([far, 0, 2.9]), view_axes(0.0), 30.0)
+    view = PerspectiveView((30, 30), np.array([far, 0, 2.9]), compute_view_axes(0.0), 30.0)
     buffers = trace_geometry(mesh, view, samples=2)
     assert buffers.hit.shape == (60, 60) and buffers.hit.all()
     row, column = np.nonzero(buffers.hit)
@@ -86,7 +86,7 @@ def test_a_box_casts_its_shadow_where_geometry_says() -> None:
 
 def test_a_wide_light_throws_a_soft_shadow() -> None:
     blocker, ground = square(1.0, z=1.0), square(4.0)
-    view = OrthographicView((20, 60), np.array([3.0, 0.0, 0.5]), view_axes(0.0), 10.0)
+    view = OrthographicView((20, 60), np.array([3.0, 0.0, 0.5]), compute_view_axes(0.0), 10.0)
     buffers = trace_geometry(join_meshes(ground, blocker), view)
     hard = buffers.light_visibility(normalise(np.array([-1.0, 0, 1])))
     soft = buffers.light_visibility(normalise(np.array([-1.0, 0, 1])), angle=20.0, rays=64)
@@ -117,5 +117,5 @@ def test_samples_interpolate_the_sky_visibility_of_their_side() -> None:
     assert np.allclose(outside.sky_visibility(), 1)
     # The normals point inwards, and the viewer sees what they call the inside.
     assert np.allclose(inside.sky_visibility(), 1)
-    within = PerspectiveView((8, 8), np.zeros(3), view_axes(0.0), 4.0)
+    within = PerspectiveView((8, 8), np.zeros(3), compute_view_axes(0.0), 4.0)
     assert np.allclose(trace_geometry(Mesh(vertices, triangles), within).sky_visibility(), 0)

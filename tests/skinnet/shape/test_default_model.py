@@ -6,7 +6,7 @@ import torch
 
 from skinnet.errors import InputError
 from skinnet.mesh._orientation import is_inside_out, label_face_components
-from skinnet.mesh._topology import boundary_loops
+from skinnet.mesh._topology import list_boundary_loops
 from skinnet.shape._default_model import MODES, build_default_model, build_procedural_model
 from skinnet.shape._ibug import IBUG
 from skinnet.shape.procedural_head import CHART_EXTENT, IDENTITY_SIZE, compute_head_radius
@@ -30,10 +30,10 @@ def test_it_is_a_face_of_the_size_of_one() -> None:
 
 def test_it_is_one_disc_that_looks_outside() -> None:
     model = build_default_model()
-    assert len(boundary_loops(model.triangles)) == 1
+    assert len(list_boundary_loops(model.triangles)) == 1
     assert label_face_components(model.triangles).max() == 0
     assert len(np.unique(model.triangles)) == len(model.mean)
-    edges = 3 * len(model.triangles) + len(boundary_loops(model.triangles)[0])
+    edges = 3 * len(model.triangles) + len(list_boundary_loops(model.triangles)[0])
     assert len(model.mean) - edges / 2 + len(model.triangles) == 1
     assert not is_inside_out(model.mean, model.triangles)
 
