@@ -70,7 +70,7 @@ class TextureSpace:
         if triangles.size == 0 or triangles.min() < 0 or triangles.max() >= len(uv):
             raise InputError(
                 f"A texture space needs triangles with corners from 0 to {len(uv) - 1}, the "
-                "texture coordinates that there are."
+                "indices of its texture coordinates."
             )
         if size < 1:
             raise InputError(f"A texture space has at least one texel a side; got {size}.")
