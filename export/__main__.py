@@ -22,13 +22,12 @@ def main(arguments: Sequence[str] | None = None) -> int:
         type=Path,
         default=Path("skin.onnx"),
         metavar="FILE",
-        help="the encoder's file, replaced with the two beside it if they are there; default: "
-        "skin.onnx",
+        help="the encoder's file; existing files are replaced; default: skin.onnx",
     )
     parser.add_argument(
         "--half",
         action="store_true",
-        help="round the weights to half precision, in which .safetensors then holds them",
+        help="round the encoder's weights to half precision; .safetensors stores them as float16",
     )
     options = parser.parse_args(arguments)
     try:
@@ -65,8 +64,7 @@ def _export(checkpoint: Path, output: Path, half: bool) -> None:
         name, worst = max(report.difference.items(), key=lambda item: item[1])
         print(
             f"{report.path}: {report.megabytes:.2f} MB, largest difference {worst:.1e} of "
-            f"the range ({name}), "
-            f"{report.milliseconds:.0f} ms at 256 x 256"
+            f"the range ({name}), {report.milliseconds:.0f} ms at 256 x 256"
         )
 
 

@@ -39,7 +39,6 @@ OUTPUTS: dict[str, Output] = {
 DECODED: dict[str, Output] = {
     "image": _output("display sRGB", 0, 1, "the photograph that the maps make")
 }
-PIXELS = ("melanin", "hemoglobin", "shading", "specular", "offset")
 
 
 class EncoderGraph(nn.Module):
@@ -50,7 +49,7 @@ class EncoderGraph(nn.Module):
         self.model = model
 
     def forward(self, image: Tensor) -> tuple[Tensor, ...]:
-        """Read photographs."""
+        """Compute the outputs."""
         maps, capture = self.model.encode(image.movedim(-1, 1).float() / 255)
         named = {**maps._asdict(), **capture._asdict(), "offset": maps.offset.movedim(1, -1)}
         return tuple(named[name] for name in OUTPUTS)
@@ -67,13 +66,13 @@ class DecoderGraph(nn.Module):
         self, melanin: Tensor, hemoglobin: Tensor, shading: Tensor, specular: Tensor,
         offset: Tensor, light: Tensor, temperature: Tensor, camera: Tensor, white_balance: Tensor,
     ) -> Tensor:  # fmt: skip
-        """Make photographs from maps and captures."""
+        """Render photographs from maps and captures."""
         capture = Capture(light, temperature, camera, white_balance)
         maps = (melanin, hemoglobin, shading, specular, offset.movedim(-1, 1))
         return to_display(self.decoder.compose(*maps, capture)).movedim(1, -1)
 
 
 def make_example(batch: int, height: int, width: int) -> Tensor:
-    """Make noise photographs of that size, the same on every run."""
+    """Generate random photographs of a size, the same on every run."""
     rng = torch.Generator().manual_seed(height * 10_000 + width)
     return torch.randint(0, 256, (batch, height, width, 3), generator=rng, dtype=torch.uint8)

@@ -16,17 +16,18 @@ import torch
 from torch import Tensor, nn
 from torch.export import Dim
 
-from export.graphs import DECODED, OUTPUTS, PIXELS, DecoderGraph, EncoderGraph, Output, make_example
+from export.graphs import DECODED, OUTPUTS, DecoderGraph, EncoderGraph, Output, make_example
 from skinnet._version import __version__
 from skinnet.errors import InputError
 from skinnet.files import write_together
-from skinnet.inference import ONNX_FORMAT, get_decoder_path
+from skinnet.inference import MAP_NAMES, ONNX_FORMAT, get_decoder_path
 from skinnet.network import SkinAutoencoder
 from skinnet.physics import LIGHTS
 
 OPSET = 20
 LICENSE = "MIT"
 SIZES = ((1, 64, 64), (2, 97, 65), (1, 128, 128), (3, 33, 201), (1, 256, 256))
+"""Batch, height and width of the photographs on which files are compared with torch."""
 
 
 @dataclass(frozen=True)
@@ -50,15 +51,15 @@ def export_model(model: SkinAutoencoder, path: Path, half: bool = False) -> list
     """Write the encoder to `path`, and the decoder and the weights beside it.
 
     Args:
-        model: What to export; the files carry its `trained_on`.
+        model: Model to export; its `trained_on` is written into the files.
         path: The encoder's .onnx file.
-        half: Round the encoder's weights to half precision, in which .safetensors then holds them.
+        half: Whether to round the encoder's weights to half precision; .safetensors stores them so.
 
     Returns:
         Measurements of encoder and decoder.
 
     Raises:
-        InputError: if an ONNX file differs from torch by more than 1e-3 of an output's range. Then
+        InputError: If an ONNX file differs from torch by more than 1e-3 of an output's range. Then
             nothing is written.
     """
     model = model.eval()
@@ -73,16 +74,16 @@ def export_model(model: SkinAutoencoder, path: Path, half: bool = False) -> list
         ("encoder", EncoderGraph(model), {"image": photograph}, OUTPUTS, path),
         ("decoder", DecoderGraph(model.decoder), decoder_inputs, DECODED, get_decoder_path(path)),
     ]
-    with write_together() as beside:
+    with write_together() as temporary:
         reports = []
         for kind, graph, inputs, outputs, target in jobs:
-            part = beside(target)
+            part = temporary(target)
             _write(graph, inputs, outputs, part)
             _describe(part, kind, model, outputs)
             reports.append(_compare(model, part, target))
         if half:
             model.encoder.half()
-        model.save_pretrained(beside(path.with_suffix(".safetensors")))
+        model.save_pretrained(temporary(path.with_suffix(".safetensors")))
     return reports
 
 
@@ -91,7 +92,7 @@ def _write(
 ) -> None:
     batch, height, width = Dim("batch"), Dim("height"), Dim("width")
     pixels = {0: batch, 1: height, 2: width}
-    shapes = {name: pixels if name in (*PIXELS, "image") else {0: batch} for name in inputs}
+    shapes = {name: pixels if name in (*MAP_NAMES, "image") else {0: batch} for name in inputs}
     with _silence_exporter():
         program = torch.onnx.export(
             graph.eval(),
@@ -143,9 +144,9 @@ def _describe(path: Path, kind: str, model: SkinAutoencoder, outputs: dict[str, 
     onnx.save(file, path)
 
 
-def _compare(model: SkinAutoencoder, beside: Path, target: Path) -> Report:
+def _compare(model: SkinAutoencoder, part: Path, target: Path) -> Report:
     options = onnxruntime.SessionOptions()
-    session = onnxruntime.InferenceSession(beside, options, providers=["CPUExecutionProvider"])
+    session = onnxruntime.InferenceSession(part, options, providers=["CPUExecutionProvider"])
     outputs = OUTPUTS if len(session.get_inputs()) == 1 else DECODED
     worst = dict.fromkeys(outputs, 0.0)
     for size in SIZES:
@@ -157,10 +158,9 @@ def _compare(model: SkinAutoencoder, beside: Path, target: Path) -> Report:
         if not difference <= 1e-3:
             raise InputError(
                 f"{target} was not written: its {name} differs from torch by {difference:.2g} of "
-                "its range. "
-                "Try the versions in constraints.txt."
+                "its range. Try the versions in constraints.txt."
             )
-    return Report(target, beside.stat().st_size / 1e6, worst, elapsed * 1e3)
+    return Report(target, part.stat().st_size / 1e6, worst, elapsed * 1e3)
 
 
 @torch.no_grad()

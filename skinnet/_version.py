@@ -1,3 +1,3 @@
-"""The version of the package, also of what it writes into files."""
+"""The version of the package, which is also written into files."""
 
 __version__ = "0.1.0"

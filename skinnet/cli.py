@@ -25,18 +25,18 @@ PIPELINE = {
 """Verbs of the classic pipeline, which take their settings from YAML (`skinnet.pipeline`)."""
 
 _STDIN = "-"
-_OK, _UNREAD, _BAD_INPUT, _INTERRUPTED = 0, 1, 2, 130
-"""Exit codes; the second is for an output that nobody reads."""
+_OK, _BROKEN_PIPE, _BAD_INPUT, _INTERRUPTED = 0, 1, 2, 130
+"""Exit codes; the second is for an output pipe whose reader has closed it."""
 
 
 def main(argv: Sequence[str] | None = None) -> int:
     """Run one verb of the command.
 
     Args:
-        argv: the arguments; those of the process by default.
+        argv: The arguments; those of the process by default.
 
     Returns:
-        The exit code: 0, 2 for bad input, or 130 after Ctrl-C.
+        The exit code: 0, 1 for a closed output pipe, 2 for bad input, or 130 after Ctrl-C.
 
     Example:
         >>> main(["predict", "absent.jpg"])  # prints to standard error
@@ -58,9 +58,9 @@ def main(argv: Sequence[str] | None = None) -> int:
         options = parser.parse_args(arguments)
         code: int = options.run(options)
     except BrokenPipeError:
-        # Nobody reads on; Python would complain when it flushes at its end.
+        # The reader has closed the pipe. Python would report that when it flushes at exit.
         os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
-        return _UNREAD
+        return _BROKEN_PIPE
     except (InputError, OSError) as error:
         return _report(error)
     except KeyboardInterrupt:

@@ -1,8 +1,8 @@
-"""Errors whose messages tell the user what to do."""
+"""Errors whose messages state what the user can do."""
 
 
 class InputError(ValueError):
-    """An input cannot be used; the message names it, gives its value and says what to do.
+    """An input cannot be used; the message names it, gives its value and states what to do.
 
     Example:
         >>> from skinnet.images import read_photo

@@ -27,7 +27,7 @@ def write_together() -> Iterator[Callable[[Path], Path]]:
         files is left.
 
     Raises:
-        InputError: a folder has the name of one of the files.
+        InputError: A folder has the name of one of the files.
 
     Example:
         >>> from tempfile import mkdtemp
@@ -62,7 +62,7 @@ def write_atomically(path: Path) -> Iterator[Path]:
     """Write a file completely or not at all.
 
     Args:
-        path: the file to write.
+        path: The file to write.
 
     Yields:
         The temporary path to write to, in the same folder. At the end it is renamed to `path`; if
@@ -87,14 +87,14 @@ def make_folder(folder: Path, remedy: str) -> Path:
     """Make a folder and its parents where they do not exist.
 
     Args:
-        folder: the folder to make.
-        remedy: what to do if it cannot be made; the end of the error message.
+        folder: The folder to make.
+        remedy: What to do if it cannot be made; the end of the error message.
 
     Returns:
         `folder` itself.
 
     Raises:
-        InputError: the folder cannot be made.
+        InputError: The folder cannot be made.
     """
     try:
         folder.mkdir(parents=True, exist_ok=True)
@@ -107,8 +107,8 @@ def write_text(path: Path, text: str) -> None:
     """Write a text file in UTF-8, completely or not at all.
 
     Args:
-        path: the file to write.
-        text: its content.
+        path: The file to write.
+        text: Its content.
 
     Raises:
         InputError: `path` is a folder.

@@ -10,7 +10,7 @@ from typing import Any
 
 import pytest
 
-from tools.house import ROOT, definitions, read
+from tools.house import ROOT, list_definitions, read
 
 ROOMS = sorted(file.parent.name for file in (ROOT / "skinnet").glob("*/__init__.py"))
 
@@ -28,7 +28,7 @@ def test_every_public_definition_is_handed_out_by_its_room() -> None:
             one.name
             for module in read(ROOT / "skinnet")
             if module.room == room and module.public
-            for one in definitions(module.tree)
+            for one in list_definitions(module.tree)
         }
         assert found <= set(public(room)), (room, found - set(public(room)))
 

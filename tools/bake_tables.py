@@ -33,7 +33,7 @@ def write_light_tables() -> None:
     observer = colour.MSDS_CMFS["CIE 1931 2 Degree Standard Observer"].copy().align(shape)
     components = colour.colorimetry.SDS_BASIS_FUNCTIONS_CIE_ILLUMINANT_D_SERIES
     daylight = [components[name].copy().align(shape).values for name in ("S0", "S1", "S2")]
-    lights = [band_power(name) for name in ILLUMINANTS]
+    lights = [average_bands(name) for name in ILLUMINANTS]
     write(
         "observer.csv",
         "CIE 1931 2 degree standard observer (CIE 015:2018), through colour-science",
@@ -54,7 +54,7 @@ def write_light_tables() -> None:
     )
 
 
-def band_power(name: str) -> NDArray[np.float64]:
+def average_bands(name: str) -> NDArray[np.float64]:
     """Average the power of an illuminant over each band."""
     # A lamp's narrow lines fall between samples that are 10 nm apart; the table has 5 nm.
     aligned = colour.SDS_ILLUMINANTS[name].copy().align(colour.SpectralShape(395, 725, 5))

@@ -20,13 +20,13 @@ PIXELS = ((20, 30), (45, 38), (50, 52), (60, 45), (66, 50), (90, 20))
 
 
 def load_photograph() -> NDArray[np.uint8]:
-    """Every other pixel of the astronaut's head, uint8 sRGB [1, 100, 90, 3]."""
+    """Load every other pixel of the astronaut's head, uint8 sRGB [1, 100, 90, 3]."""
     photo: NDArray[np.uint8] = astronaut()  # type: ignore[no-untyped-call]
     return np.ascontiguousarray(photo[None, :200:2, 120:300:2])
 
 
 def summarise_outputs(outputs: Mapping[str, NDArray[np.float32]]) -> dict[str, list[float]]:
-    """Mean, standard deviation and some pixels of each map, and all of light and camera."""
+    """Summarise maps by mean, deviation and some pixels; give light and camera in full."""
     summary = {}
     for name in (*MAP_NAMES, "mask"):
         value = outputs[name][0].astype(np.float64)

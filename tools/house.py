@@ -26,7 +26,7 @@ Definition = Function | ast.ClassDef
 
 
 class Module(NamedTuple):
-    """A source file: its path below the package, the room it stands in, and what it says."""
+    """A source file: its path below the package, its room, syntax tree and number of lines."""
 
     path: Path
     room: str
@@ -43,21 +43,21 @@ class Module(NamedTuple):
 def measure(package: Path, floors: dict[str, int]) -> dict[str, Any]:
     """The numbers of a package, given the floor of each of its rooms and root modules."""
     modules = read(package)
-    public = [one for module in modules if module.public for one in definitions(module.tree)]
-    functions = [one for module in modules for one in functions_of(module.tree)]
-    documented = [ast.get_docstring(one) is not None for one in with_methods(public)]
-    imports = {(a, b) for module in modules for a, b in imported(module) if a != b}
+    public = [one for module in modules if module.public for one in list_definitions(module.tree)]
+    functions = [one for module in modules for one in list_functions(module.tree)]
+    documented = [ast.get_docstring(one) is not None for one in add_methods(public)]
+    imports = {(a, b) for module in modules for a, b in list_imports(module) if a != b}
     lengths = sorted((module.lines, str(module.path)) for module in modules if module.lines)
     return {
-        "entries": len(entries(package)),
+        "entries": len(list_entries(package)),
         "public_definitions": len(public),
         "upward_imports": sum(floors[a] <= floors[b] for a, b in imports),
         "room_cycles": int(has_cycle(imports)),
         "files": len(lengths),
         "median_file": median(length for length, _ in lengths),
         "longest_file": {"lines": lengths[-1][0], "path": lengths[-1][1]},
-        "fully_annotated_share": share([annotated(one) for one in functions]),
-        "docstring_share": share(documented),
+        "fully_annotated_share": compute_share([is_annotated(one) for one in functions]),
+        "docstring_share": compute_share(documented),
     }
 
 
@@ -73,19 +73,19 @@ def read(package: Path) -> list[Module]:
     return found
 
 
-def entries(package: Path) -> list[str]:
+def list_entries(package: Path) -> list[str]:
     """Rooms and modules at the root of the package."""
     rooms = [file.parent.name for file in package.glob("*/__init__.py")]
     return sorted(rooms + [file.stem for file in package.glob("*.py") if file.stem != "__init__"])
 
 
-def definitions(tree: ast.Module) -> list[Definition]:
+def list_definitions(tree: ast.Module) -> list[Definition]:
     """Public classes and functions at the top of a module."""
     found = [one for one in tree.body if isinstance(one, Definition)]
     return [one for one in found if not one.name.startswith("_")]
 
 
-def with_methods(found: list[Definition]) -> Iterator[Definition]:
+def add_methods(found: list[Definition]) -> Iterator[Definition]:
     """Definitions, and the public methods of those that are classes."""
     for one in found:
         yield one
@@ -94,12 +94,12 @@ def with_methods(found: list[Definition]) -> Iterator[Definition]:
             yield from (inner for inner in methods if not inner.name.startswith("_"))
 
 
-def functions_of(tree: ast.Module) -> list[Function]:
+def list_functions(tree: ast.Module) -> list[Function]:
     """All functions and methods of a module, private and inner ones too."""
     return [one for one in ast.walk(tree) if isinstance(one, Function)]
 
 
-def annotated(function: Function) -> bool:
+def is_annotated(function: Function) -> bool:
     """Whether every argument and the result has a type; self and cls need none."""
     given = function.args
     arguments = [*given.posonlyargs, *given.args, *given.kwonlyargs]
@@ -108,7 +108,7 @@ def annotated(function: Function) -> bool:
     return typed and (function.returns is not None)
 
 
-def imported(module: Module) -> Iterator[tuple[str, str]]:
+def list_imports(module: Module) -> Iterator[tuple[str, str]]:
     """Rooms from and to which a module imports; what the root hands out lazily is not counted."""
     for node in ast.walk(module.tree):
         names: list[str] = []
@@ -135,7 +135,7 @@ def has_cycle(imports: set[tuple[str, str]]) -> bool:
     return False
 
 
-def contract() -> dict[str, int]:
+def read_floors() -> dict[str, int]:
     """The floor of each room, 0 the lowest, as the import contract has it."""
     settings = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))
     contracts = settings["tool"]["importlinter"]["contracts"]
@@ -144,7 +144,7 @@ def contract() -> dict[str, int]:
     return {room.strip(): floor for floor, layer in floors for room in layer.split("|")}
 
 
-def share(found: list[bool]) -> float:
+def compute_share(found: list[bool]) -> float:
     """The part that is true, to four digits."""
     return round(sum(found) / max(len(found), 1), 4)
 
@@ -154,7 +154,7 @@ def main(arguments: list[str] | None = None) -> int:
     parser = argparse.ArgumentParser(prog="python -m tools.house", description=__doc__)
     parser.add_argument("--json", action="store_true", help="one JSON object")
     options = parser.parse_args(arguments)
-    found = measure(ROOT / PACKAGE, contract())
+    found = measure(ROOT / PACKAGE, read_floors())
     if options.json:
         print(json.dumps(found))
         return 0

@@ -12,8 +12,8 @@ ROOT = Path(__file__).parents[1]
 _BOUND = re.compile(r"^([A-Za-z0-9_.-]+)(?:\[.*\])?>=([0-9][0-9A-Za-z.]*)")
 
 
-def lowest_versions(project: Path) -> dict[str, str]:
-    """The lower bound of every package that a pyproject.toml names, extras included."""
+def read_lowest_versions(project: Path) -> dict[str, str]:
+    """Read the lower bound of every package that a pyproject.toml names, extras included."""
     settings = tomllib.loads(project.read_text(encoding="utf-8"))["project"]
     return dict(sorted(_bounds(settings)))
 
@@ -29,7 +29,7 @@ def _bounds(settings: dict[str, object]) -> Iterator[tuple[str, str]]:
 
 def main() -> None:
     """Print one constraint a line."""
-    for name, version in lowest_versions(ROOT / "pyproject.toml").items():
+    for name, version in read_lowest_versions(ROOT / "pyproject.toml").items():
         print(f"{name}=={version}")
 
 

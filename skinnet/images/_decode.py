@@ -79,8 +79,8 @@ def check_size(width: int, height: int, name: str) -> None:
 def to_srgb(image: Image.Image, name: str) -> Image.Image:
     """Convert an image to RGB in sRGB by its own profile; blend transparent pixels with white.
 
-    An image without a profile is taken as sRGB. `name` stands for the image in errors. Raises
-    `InputError` for modes without a known white, and for a profile that cannot be used.
+    An image without a profile is taken as sRGB. Error messages contain `name`. Raises `InputError`
+    for modes without a known white, and for a profile that cannot be used.
     """
     plain = _to_eight_bits(image, name)
     alpha = plain.convert("RGBA").getchannel("A") if plain.has_transparency_data else None

@@ -12,8 +12,8 @@ from skinnet.images.box import Box
 from skinnet.images.resizing import resize
 
 HEAD_CENTRE = 0.45
-"""Height of the head's centre, half-way from the top of the hair to the chin, below the top of the
-face's box, in heights of that box."""
+"""Distance from the top of the face's box down to the head's centre, in heights of that box. The
+head's centre is half-way from the top of the hair to the chin."""
 
 _DETECTION_SIZE = 320
 """Longer side, in pixels, of the picture in which faces are detected."""
@@ -32,8 +32,8 @@ def find_face(photo: NDArray[np.uint8]) -> Box | None:
         photo: uint8 sRGB [H, W, 3].
 
     Returns:
-        A square box from the brows to the chin, which may exceed the photograph by a rounding; None
-        if there is no face of at least an eighth of the shorter side.
+        A square box from the brows to the chin, which may exceed the photograph by a rounding
+        error; None if there is no face of at least an eighth of the shorter side.
 
     Source:
         Cascade of local binary patterns (Liao et al. 2007), as scikit-image ships it.
@@ -59,10 +59,10 @@ def frame_head(face: Box, width: int, height: int, margin: float = 2.0) -> Box:
     """Place a square around the head, and clip it to the photograph.
 
     Args:
-        face: the face's box, from the brows to the chin.
-        width: columns of the photograph.
-        height: rows of the photograph.
-        margin: side of the square in sides of the face's box; at 1.4 or more, hair and chin of an
+        face: The face's box, from the brows to the chin.
+        width: Columns of the photograph.
+        height: Rows of the photograph.
+        margin: Side of the square in sides of the face's box; at 1.4 or more, hair and chin of an
             upright head are inside.
 
     Returns:
@@ -86,7 +86,7 @@ def frame_head(face: Box, width: int, height: int, margin: float = 2.0) -> Box:
 def _detect(
     small: NDArray[np.uint8], smallest: float, step: float, agreeing: int
 ) -> list[dict[str, int]]:
-    """Detect squares (r, c, width, height) that look like faces, `smallest` pixels wide or more."""
+    """Detect faces as squares (r, c, width, height) that are at least `smallest` pixels wide."""
     least, most = max(24, round(smallest)), min(small.shape[:2])
     if most < least:
         return []

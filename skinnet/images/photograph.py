@@ -25,15 +25,15 @@ def read_photo(
     are blended with white, and of several frames the first is read.
 
     Args:
-        source: a path, or an open binary file.
-        name: how errors call the photograph; the path by default.
+        source: A path, or an open binary file.
+        name: Name of the photograph in error messages; the path by default.
 
     Returns:
         uint8 sRGB [H, W, 3].
 
     Raises:
-        InputError: the file is missing, empty, damaged or no picture, has more than 100 megapixels,
-            or has pixels whose white is not known (floats, for example).
+        InputError: The file is missing, empty, damaged or not a picture, has more than 100
+            megapixels, or has pixels whose white is not known (floats, for example).
 
     Example:
         >>> from io import BytesIO
@@ -60,14 +60,14 @@ def as_photo(image: str | Path | Image.Image | NDArray[Any]) -> NDArray[np.uint8
     """Convert a path, a Pillow image or an array to uint8 sRGB.
 
     Args:
-        image: a path, a Pillow image, or an sRGB array [H, W], [H, W, 1], [H, W, 3] or [H, W, 4] of
+        image: A path, a Pillow image, or an sRGB array [H, W], [H, W, 1], [H, W, 3] or [H, W, 4] of
             uint8 or of floats in [0, 1]. Transparent pixels are blended with white.
 
     Returns:
         uint8 sRGB [H, W, 3].
 
     Raises:
-        InputError: the image is of another type, shape or range, or cannot be read.
+        InputError: The image is of another type, shape or range, or cannot be read.
 
     Example:
         >>> as_photo(np.array([[0.0, 1.0]])).tolist()
@@ -88,12 +88,12 @@ def write_png(path: Path, array: NDArray[Any], text: Mapping[str, str] | None = 
     """Write a PNG file, completely or not at all.
 
     Args:
-        path: the file to write.
+        path: The file to write.
         array: uint8 sRGB [H, W, 3], or uint16 grey [H, W].
-        text: what to write into the file as tEXt chunks, by keyword.
+        text: What to write into the file as tEXt chunks, by keyword.
 
     Raises:
-        ValueError: the array is of another type or shape.
+        ValueError: The array is of another type or shape.
 
     Example:
         >>> from tempfile import mkdtemp

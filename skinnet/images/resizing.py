@@ -14,8 +14,8 @@ def resize(pixels: Pixels, width: int, height: int) -> Pixels:
 
     Args:
         pixels: uint8 [H, W, 3] or float32 [H, W].
-        width: columns of the result.
-        height: rows of the result.
+        width: Columns of the result.
+        height: Rows of the result.
 
     Returns:
         The resized pixels, of the same type.

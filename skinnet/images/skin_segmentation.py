@@ -40,7 +40,7 @@ def segment_skin(photo: NDArray[np.uint8], face: Box) -> NDArray[np.float32]:
 
     Args:
         photo: uint8 sRGB [H, W, 3].
-        face: the face's box, from the brows to the chin, as `find_face` gives it.
+        face: The face's box, from the brows to the chin, as `find_face` gives it.
 
     Returns:
         Probability of skin, float32 [H, W] in [0, 1].

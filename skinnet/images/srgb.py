@@ -36,7 +36,7 @@ def linear_to_srgb(linear: NDArray[Any]) -> NDArray[np.float32]:
     """Convert linear sRGB to sRGB, clipped to [0, 1].
 
     Args:
-        linear: floats of any shape.
+        linear: Floats of any shape.
 
     Returns:
         sRGB in [0, 1], of the same shape.
@@ -57,7 +57,7 @@ def to_uint8(srgb: NDArray[Any]) -> NDArray[np.uint8]:
     """Round sRGB in [0, 1] to uint8; values outside are clipped.
 
     Args:
-        srgb: floats of any shape.
+        srgb: Floats of any shape.
 
     Returns:
         uint8 of the same shape.

@@ -33,7 +33,7 @@ MAX_FACTOR = 10.0
 """Largest factor of a pigment in an edit."""
 
 _MIN_SIDE = 16
-"""Least pixels along a side of what the encoder gets."""
+"""Smallest side, in pixels, of the encoder's input."""
 
 ImageLike = str | Path | Image.Image | NDArray[Any]
 _Arrays = Mapping[str, NDArray[np.float32]]
@@ -45,9 +45,9 @@ class Decomposer:
     The model files are opened once, at the first photograph.
 
     Args:
-        model: an encoder, X.onnx, with its decoder X.decoder.onnx in the same folder; None for the
+        model: An encoder, X.onnx, with its decoder X.decoder.onnx in the same folder; None for the
             one that comes with the package.
-        threads: number of threads; None for all cores.
+        threads: Number of threads; None for all cores.
 
     Example:
         >>> from skimage.data import astronaut
@@ -77,7 +77,7 @@ class Decomposer:
         """Open both model files now.
 
         Raises:
-            InputError: one of them cannot be used.
+            InputError: One of them cannot be used.
         """
         _ = self.encoder, self.decoder
 
@@ -91,19 +91,19 @@ class Decomposer:
         """Decompose a photograph.
 
         Args:
-            image: a path, a Pillow image or an array, as `skinnet.images.as_photo` takes it.
-            whole_image: whether to decompose the whole image, and not the square around the head of
+            image: A path, a Pillow image or an array, as `skinnet.images.as_photo` takes it.
+            whole_image: Whether to decompose the whole image, and not the square around the head of
                 the largest face.
-            name: how errors call the image; the path by default.
-            detail: whether to add the photograph's detail to the maps; without it they are the
+            name: Name of the image in error messages; the path by default.
+            detail: Whether to add the photograph's detail to the maps; without it they are the
                 network's maps, enlarged, which is faster.
 
         Returns:
             Maps of the photograph's size, light and camera.
 
         Raises:
-            InputError: the image or a model file cannot be used.
-            NoFaceError: no face was found.
+            InputError: The image or a model file cannot be used.
+            NoFaceError: No face was found.
         """
         photo = as_photo(image)
         box = _choose_box(photo, whole_image, name or _name_image(image))
@@ -132,19 +132,19 @@ class Decomposer:
         not skin keep their exact values.
 
         Args:
-            image: a path, a Pillow image or an array, as `skinnet.images.as_photo` takes it.
-            melanin: factor of melanin in [0, 10].
-            hemoglobin: factor of hemoglobin in [0, 10].
-            whole_image: whether to edit the whole image, and not the square around the head of the
+            image: A path, a Pillow image or an array, as `skinnet.images.as_photo` takes it.
+            melanin: Factor of melanin in [0, 10].
+            hemoglobin: Factor of hemoglobin in [0, 10].
+            whole_image: Whether to edit the whole image, and not the square around the head of the
                 largest face.
-            name: how errors call the image; the path by default.
+            name: Name of the image in error messages; the path by default.
 
         Returns:
             The edited photograph, uint8 sRGB [H, W, 3].
 
         Raises:
-            InputError: a factor, the image or a model file cannot be used.
-            NoFaceError: no face was found.
+            InputError: A factor, the image or a model file cannot be used.
+            NoFaceError: No face was found.
 
         Example:
             >>> from skimage.data import astronaut

@@ -23,20 +23,20 @@ class Decomposition:
     with `camera`. With detail this holds for every pixel of skin. Outside `box` maps are 0.
 
     Attributes:
-        melanin: volume fraction of melanosomes in the epidermis, float32 [H, W] in [0, 1].
-        hemoglobin: volume fraction of blood in the dermis, float32 [H, W] in [0, 1].
-        shading: diffuse shading relative to the light, float32 [H, W].
-        specular: specular reflection relative to the light, float32 [H, W].
-        mask: probability of skin, float32 [H, W] in [0, 1].
-        offset: what the skin model does not explain, linear sRGB, float32 [H, W, 3].
-        light: weight of each light by name, with sum 1, and `temperature_k`, the colour temperature
+        melanin: Volume fraction of melanosomes in the epidermis, float32 [H, W] in [0, 1].
+        hemoglobin: Volume fraction of blood in the dermis, float32 [H, W] in [0, 1].
+        shading: Diffuse shading relative to the light, float32 [H, W].
+        specular: Specular reflection relative to the light, float32 [H, W].
+        mask: Probability of skin, float32 [H, W] in [0, 1].
+        offset: Colour that the skin model does not explain, linear sRGB, float32 [H, W, 3].
+        light: Weight of each light by name, with sum 1, and `temperature_k`, the colour temperature
             of the daylight in kelvin.
         camera: `components`, the camera's principal components in standard deviations, and
             `white_balance`, its errors as the ratios `r_over_g` and `b_over_g`.
         reconstruction: uint8 sRGB [H, W, 3]; the model's picture of skin with the network's offset,
             blended with the decoder's picture off skin; the photograph itself outside `box`.
-        box: the part of the photograph that was decomposed.
-        output_info: unit, range and description of each map.
+        box: The part of the photograph that was decomposed.
+        output_info: Unit, range and description of each map.
         model: `version` and `trained_on` of the encoder.
 
     Example:
@@ -71,13 +71,17 @@ class Decomposition:
         )
 
     def maps(self) -> dict[str, NDArray[np.float32]]:
-        """All maps [H, W] by name; the channels of the offset are `offset_r` to `offset_b`."""
+        """Return all maps [H, W] by name; the offset is split into `offset_r` to `offset_b`."""
         names = ("melanin", "hemoglobin", "shading", "specular", "mask")
         channels = {f"offset_{name}": self.offset[..., i] for i, name in enumerate("rgb")}
         return {name: getattr(self, name) for name in names} | channels
 
     def describe_map(self, name: str) -> OutputInfo:
-        """Unit, range and description of a map of `maps()`."""
+        """Return unit, range and description of a map.
+
+        Args:
+            name: A key of `maps()`.
+        """
         return self.output_info[name.removesuffix("_r").removesuffix("_g").removesuffix("_b")]
 
     def summary(self) -> dict[str, Any]:

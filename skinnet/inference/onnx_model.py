@@ -14,16 +14,16 @@ from onnxruntime.capi import onnxruntime_pybind11_state as ort_errors
 from skinnet.errors import InputError
 
 ONNX_FORMAT = "1"
-"""Version of the inputs, outputs and metadata that files and this code agree on."""
+"""Version of the inputs, outputs and metadata of a file."""
 
 SHIPPED_ENCODER = Path(__file__).parent / "models" / "skin.onnx"
 """The encoder that comes with the package; its decoder is in the same folder."""
 
 MAP_NAMES = ("melanin", "hemoglobin", "shading", "specular", "offset")
-"""Maps that the encoder gives and the decoder takes; the encoder gives `mask` too."""
+"""Maps that are outputs of the encoder and inputs of the decoder; `mask` is an output only."""
 
 CAPTURE_NAMES = ("light", "temperature", "camera", "white_balance")
-"""Light and camera of a photograph, which the encoder gives and the decoder takes."""
+"""Light and camera of a photograph: outputs of the encoder and inputs of the decoder."""
 
 _INPUTS = {"encoder": {"image"}, "decoder": {*MAP_NAMES, *CAPTURE_NAMES}}
 _OUTPUTS = {"encoder": {*MAP_NAMES, *CAPTURE_NAMES, "mask"}, "decoder": {"image"}}
@@ -48,13 +48,13 @@ class OnnxModel:
     """An open encoder or decoder with its metadata.
 
     Attributes:
-        path: the file.
-        session: the onnxruntime session.
-        version: version of skinnet that exported the file.
-        trained_on: what the weights were trained on.
-        working_size: longer side, in pixels, to which the encoder's photographs are resized.
-        lights: names of the lights that the output `light` weights.
-        output_info: unit, range and description of each map of the encoder; empty for a decoder.
+        path: The file.
+        session: The onnxruntime session.
+        version: Version of skinnet that exported the file.
+        trained_on: What the weights were trained on.
+        working_size: Longer side, in pixels, to which the encoder's photographs are resized.
+        lights: Names of the lights that the output `light` weights.
+        output_info: Unit, range and description of each map of the encoder; empty for a decoder.
 
     Example:
         >>> encoder = open_model(SHIPPED_ENCODER, "encoder", threads=1)
@@ -82,7 +82,7 @@ class OnnxModel:
             Outputs by name; the decoder's `image` is sRGB [batch, h, w, 3].
 
         Raises:
-            InputError: the network cannot take these inputs.
+            InputError: The network cannot take these inputs.
         """
         names = [output.name for output in self.session.get_outputs()]
         try:
@@ -93,7 +93,7 @@ class OnnxModel:
 
 
 def get_decoder_path(encoder: Path) -> Path:
-    """Name the decoder that belongs to an encoder.
+    """Return the path of the decoder that belongs to an encoder.
 
     Args:
         encoder: X.onnx.
@@ -112,16 +112,20 @@ def open_model(path: Path, kind: str, threads: int | None = None) -> OnnxModel:
     """Open an encoder or a decoder.
 
     Args:
-        path: the ONNX file.
+        path: The ONNX file.
         kind: "encoder" or "decoder".
-        threads: number of threads; None for all cores.
+        threads: Number of threads; None for all cores.
 
     Returns:
         The open model.
 
     Raises:
-        InputError: the file is missing, damaged, not one of skinnet's, of another format, or of
+        InputError: The file is missing, damaged, not one of skinnet's, of another format, or of
             the other kind.
+
+    Example:
+        >>> open_model(SHIPPED_ENCODER, "encoder").working_size
+        160
     """
     if not path.is_file():
         raise InputError(f"There is no {kind} file {path}; {_REMEDY}.")
@@ -150,7 +154,7 @@ def _check(
     if metadata.get("skinnet.format") != ONNX_FORMAT:
         raise InputError(
             f"{path} has format {metadata.get('skinnet.format')}, and this skinnet reads format "
-            f"{ONNX_FORMAT}; export it again, or install the skinnet that made it."
+            f"{ONNX_FORMAT}; export it again, or install the version of skinnet that wrote it."
         )
     if actual != kind:
         raise InputError(
@@ -160,7 +164,7 @@ def _check(
     outputs = {item.name for item in session.get_outputs()}
     if inputs != _INPUTS[kind] or not _OUTPUTS[kind] <= outputs:
         raise InputError(
-            f"{path} says that it is {_with_article(kind)}, but its inputs are "
+            f"{path} is labelled as {_with_article(kind)}, but its inputs are "
             f"{', '.join(sorted(inputs))} and its outputs {', '.join(sorted(outputs))}; {_REMEDY}."
         )
 

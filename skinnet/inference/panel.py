@@ -18,6 +18,7 @@ BLANK = (232, 232, 234)
 """sRGB of pixels without a value."""
 
 _GAP, _CAPTION, _SCALE = 18, 30, 46
+"""Space between tiles, and heights of a caption and a scale, in pixels."""
 _INK, _PAPER, _OUTLINE = (38, 38, 40), (255, 255, 255), (150, 150, 152)
 
 _MELANIN = ((255, 243, 224), (233, 190, 140), (168, 104, 58), (92, 50, 28), (28, 16, 12))
@@ -38,8 +39,8 @@ def draw_panel(photo: NDArray[np.uint8], decomposition: Decomposition) -> NDArra
     """Draw a photograph, its maps and its reconstruction in a grid of 4 x 2 tiles.
 
     Args:
-        photo: the photograph that was decomposed, uint8 sRGB [H, W, 3].
-        decomposition: its decomposition.
+        photo: The photograph that was decomposed, uint8 sRGB [H, W, 3].
+        decomposition: Its decomposition.
 
     Returns:
         uint8 sRGB [806, 1290, 3].
@@ -70,8 +71,8 @@ def draw_grid(tiles: Sequence[Image.Image], columns: int) -> NDArray[np.uint8]:
     """Draw tiles in a grid, row by row.
 
     Args:
-        tiles: pictures by `draw_picture` or `draw_pigment_map`.
-        columns: tiles in a row.
+        tiles: Tiles from `draw_picture` or `draw_pigment_map`.
+        columns: Tiles in a row.
 
     Returns:
         uint8 sRGB [h, w, 3].
@@ -92,7 +93,7 @@ def draw_picture(caption: str, pixels: NDArray[np.uint8]) -> Image.Image:
     """Draw a tile with a picture.
 
     Args:
-        caption: the text above it.
+        caption: The text above it.
         pixels: uint8 sRGB [h, w, 3] of any size.
 
     Returns:
@@ -116,10 +117,10 @@ def draw_pigment_map(
 
     Args:
         name: "melanin" or "hemoglobin".
-        values: volume fractions [h, w].
-        mask: probability of skin [h, w]; the tile is blank where it is 0.
-        top: end of the scale; by default a round number that at most 1 % of the skin exceeds.
-        caption: the text above the map; the pigment's name by default.
+        values: Volume fractions [h, w].
+        mask: Probability of skin [h, w]; the tile is blank where it is 0.
+        top: End of the scale; by default a round number that at most 1 % of the skin exceeds.
+        caption: The text above the map; the pigment's name by default.
 
     Returns:
         The tile.

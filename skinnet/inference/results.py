@@ -33,17 +33,17 @@ def write_results(
     `scale`, `offset` and `unit`.
 
     Args:
-        folder: where to write; it is made if it does not exist.
-        stem: how the files' names begin: STEM_panel.png, STEM_melanin.png, ..., STEM.json.
-        photo: the photograph, uint8 sRGB [H, W, 3].
-        decomposition: its decomposition.
-        summary: what to write as JSON, usually `decomposition.summary()`.
+        folder: Where to write; it is made if it does not exist.
+        stem: How the files' names begin: STEM_panel.png, STEM_melanin.png, ..., STEM.json.
+        photo: The photograph, uint8 sRGB [H, W, 3].
+        decomposition: Its decomposition.
+        summary: Content of the JSON file, usually `decomposition.summary()`.
 
     Returns:
         The number of files.
 
     Raises:
-        InputError: the folder cannot be written.
+        InputError: The folder cannot be written.
 
     Example:
         >>> from tempfile import mkdtemp

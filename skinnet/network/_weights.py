@@ -15,7 +15,7 @@ from skinnet.errors import InputError
 from skinnet.files import write_atomically
 
 WEIGHTS_FORMAT = 3
-"""Version of weights and checkpoints: raise it with every change to what a weight means."""
+"""Version of weights and checkpoints; increase it whenever the meaning of a weight changes."""
 
 KIND = "autoencoder"
 SHIPPED_WEIGHTS = Path(__file__).parents[1] / "inference" / "models" / "skin.safetensors"
@@ -47,7 +47,7 @@ def read_weights(path: Path) -> SavedModel:
     """Read a model from a safetensors file.
 
     Raises:
-        InputError: for a file that is missing, truncated, of another format or not of skinnet.
+        InputError: For a file that is missing, truncated, of another format or not of skinnet.
     """
     if not path.is_file():
         raise InputError(f"{path} is not a file; give the path of a .safetensors file.")
@@ -56,9 +56,9 @@ def read_weights(path: Path) -> SavedModel:
             metadata = file.metadata() or {}
             state = {name: file.get_tensor(name) for name in file.keys()}
     except SafetensorError as error:
-        raise InputError(f"{path} is no complete safetensors file ({error}).") from error
+        raise InputError(f"{path} is not a complete safetensors file ({error}).") from error
     if metadata.get("skinnet.kind") != KIND:
-        raise InputError(f"{path} holds no skinnet weights; it was written by something else.")
+        raise InputError(f"{path} does not hold weights of skinnet; another program wrote it.")
     if metadata.get("skinnet.format") != str(WEIGHTS_FORMAT):
         raise InputError(
             f"{path} has format {metadata.get('skinnet.format')}, this skinnet reads "

@@ -26,28 +26,29 @@ F_MEL_MAX = 0.43
 """Largest melanosome volume fraction (Table 1 of Alotaibi & Smith 2017)."""
 
 F_BLOOD_MAX = 0.15
-"""Twice the paper's 7 %: lips and flushed cheeks hold more blood than other skin."""
+"""About twice the paper's 7 %: lips and flushed cheeks hold more blood than other skin."""
 
 SHADING_MAX = 4.0
 CAMERA_MAX = 3.0
 WHITE_BALANCE_MAX = 0.4
 
 _MIRED = (40.0, 250.0)
-"""Range of daylight, 25,000 K to 4,000 K, in mired: equal steps look about equally large."""
+"""Range of daylight, 25,000 K to 4,000 K, in mired. Equal steps are about equally visible."""
 
 _MAP_CHANNELS = 5
 _GLOBAL_CHANNELS = len(LIGHTS) + 1 + CAMERA_COMPONENTS + 2
 
 
 class SkinMaps(NamedTuple):
-    """What each pixel of a photograph shows.
+    """Maps of skin in a photograph, one value for each pixel.
 
     Attributes:
         melanin: Melanosome volume fraction, in [0, 0.43].
         hemoglobin: Blood volume fraction, in [0, 0.15].
         shading: Diffuse shading relative to the light, in [0, 4].
         specular: Specular reflection relative to the light, in [0, 1].
-        offset: What skin does not explain, in linear sRGB, in [-1, 1]; the encoder's is in [0, 1].
+        offset: Colour that the skin model does not explain, linear sRGB in [-1, 1]; the encoder's
+            is in [0, 1].
         mask: Probability that the pixel is skin, in [0, 1].
 
     Source:
@@ -86,7 +87,7 @@ def _activate(
         WHITE_BALANCE_MAX * balance.tanh(),
     )
     skin = mask.sigmoid()
-    # Detached, or the best explanation of every photograph would be that it shows no skin.
+    # Detached: otherwise a mask without skin would have the smallest reconstruction loss.
     offset = (1 - skin.detach())[:, None] * linear
     activated = SkinMaps(
         F_MEL_MAX * melanin.sigmoid() ** 3,
@@ -104,12 +105,12 @@ def _at_least_float32(value: Tensor) -> Tensor:
 
 
 class Reading(NamedTuple):
-    """A photograph read as skin.
+    """Maps, capture and reconstruction of photographs.
 
     Attributes:
-        maps: What each pixel shows.
-        capture: Light and camera of the photograph.
-        reconstruction: The photograph made from maps and capture, in linear sRGB, not clipped.
+        maps: Maps of skin.
+        capture: Light and camera of each photograph.
+        reconstruction: Photographs computed from maps and capture, in linear sRGB, not clipped.
     """
 
     maps: SkinMaps
@@ -119,7 +120,7 @@ class Reading(NamedTuple):
 
 @dataclass(frozen=True)
 class AutoencoderConfig:
-    """What a `SkinAutoencoder` is built from.
+    """Configuration of a `SkinAutoencoder`.
 
     Attributes:
         optics: Name of a preset of `SkinOptics`.
@@ -133,7 +134,7 @@ class AutoencoderConfig:
 
 
 class SkinAutoencoder(nn.Module):
-    """Reads photographs as skin, and makes photographs from what was read.
+    """Estimates maps of skin and the capture of photographs, and reconstructs the photographs.
 
     Photograph -> `SkinEncoder` -> output activations -> `SkinDecoder` -> photograph. One forward
     pass serves training, inference and export.
@@ -142,8 +143,8 @@ class SkinAutoencoder(nn.Module):
         config: Sizes of the network and the optics of skin; the defaults are `AutoencoderConfig()`.
 
     Attributes:
-        config: What the model was built from.
-        trained_on: One line on the training data, which files of the model carry.
+        config: Configuration of the model.
+        trained_on: One line on the training data, which is written into files of the model.
 
     Source:
         Alotaibi & Smith, "BioFaceNet", BMVC 2019, for the idea of an encoder with a physical
@@ -177,7 +178,7 @@ class SkinAutoencoder(nn.Module):
             The model, on the CPU.
 
         Raises:
-            InputError: for a file that is missing, truncated, of another format or not of skinnet.
+            InputError: For a file that is missing, truncated, of another format or not of skinnet.
 
         Example:
             >>> from skinnet import SkinAutoencoder
@@ -221,7 +222,7 @@ class SkinAutoencoder(nn.Module):
         return SavedModel(asdict(self.config), self.trained_on, self.state_dict())
 
     def forward(self, photograph: Float[Tensor, "batch 3 height width"]) -> Reading:
-        """Read photographs, and make them again from what was read.
+        """Estimate maps and capture, and reconstruct the photographs.
 
         Args:
             photograph: Display sRGB in [0, 1].
@@ -233,7 +234,7 @@ class SkinAutoencoder(nn.Module):
         return Reading(maps, capture, self.decode(maps, capture))
 
     def encode(self, photograph: Float[Tensor, "batch 3 height width"]) -> tuple[SkinMaps, Capture]:
-        """Read maps and capture; this half may run in lower precision.
+        """Estimate maps and capture; this half may run in lower precision.
 
         Args:
             photograph: Display sRGB in [0, 1].
@@ -246,10 +247,10 @@ class SkinAutoencoder(nn.Module):
         return _activate(maps, global_outputs, linear)
 
     def decode(self, maps: SkinMaps, capture: Capture) -> Float[Tensor, "batch 3 height width"]:
-        """Make photographs from maps and capture; this half needs float32.
+        """Reconstruct photographs from maps and capture; this half needs float32.
 
         Args:
-            maps: What each pixel shows.
+            maps: Maps of skin.
             capture: Light and camera of each photograph.
 
         Returns:

@@ -25,7 +25,7 @@ def read_checkpoint(path: str | Path) -> dict[str, Any]:
         The checkpoint as Lightning wrote it. Its entry `skinnet` describes the model.
 
     Raises:
-        InputError: for a file that is missing, truncated, of another format or not of skinnet.
+        InputError: For a file that is missing, truncated, of another format or not of skinnet.
 
     Example:
         >>> from skinnet.network import read_checkpoint
@@ -40,11 +40,12 @@ def read_checkpoint(path: str | Path) -> dict[str, Any]:
         checkpoint = torch.load(path, map_location="cpu", weights_only=True)
     except (RuntimeError, EOFError, pickle.UnpicklingError, OSError, ValueError) as error:
         raise InputError(
-            f"{path} is no whole checkpoint; give one that training wrote: RUN/best.ckpt."
+            f"{path} is not a complete checkpoint; give one that training wrote, such as "
+            "RUN/best.ckpt."
         ) from error
     description = checkpoint.get("skinnet") if isinstance(checkpoint, dict) else None
     if not isinstance(description, dict):
-        raise InputError(f"{path} is not a checkpoint of skinnet; something else wrote it.")
+        raise InputError(f"{path} is not a checkpoint of skinnet; another program wrote it.")
     if description.get("format") != WEIGHTS_FORMAT:
         raise InputError(
             f"{path} has format {description.get('format')}, this skinnet reads {WEIGHTS_FORMAT}; "

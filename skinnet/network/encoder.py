@@ -11,6 +11,7 @@ from torch import Tensor, nn
 from skinnet.errors import InputError
 
 WIDTHS = (24, 40, 80, 128, 160)
+"""Channels of the U-Net at each level, finest first."""
 
 _HEAD_CHANNELS = 24
 """Channels of the head, which alone works at the photograph's own resolution."""
@@ -23,6 +24,7 @@ _ATTENTION_CHANNELS = 32
 
 _PIXEL_CHANNELS = 9
 _DARKEST = 4e-3
+"""Linear value that is added before a logarithm, which is infinite at zero."""
 
 _EARLIER_NAMES = {
     "scene.": "context.",
@@ -36,17 +38,17 @@ _EARLIER_NAMES = {
     "head.look.": "head.conv.",
     "head.mixed.": "head.norm.",
 }
-"""Prefixes of weights in files of version 0.1, and what they are called today."""
+"""Prefixes of weights in files of version 0.1, and their present names."""
 
 
 class SkinEncoder(nn.Module):
     """Computes raw maps and raw global values from a photograph of any size.
 
     A U-Net works from half the photograph's resolution down, and a head works at full resolution.
-    The head sees display values, linear values and their logarithms, in which pigments are nearly
-    linear. It is modulated by a context vector of the whole photograph, because how a colour reads
-    depends on the light. A confidence-weighted vote on the light's tint is also added to the global
-    values directly. `SkinAutoencoder` gives the outputs their meaning and range.
+    The inputs of the head are display values, linear values and their logarithms, in which pigments
+    are nearly linear. It is modulated by a context vector of the whole photograph, because the
+    pigments of a colour depend on the light. A confidence-weighted vote on the light's tint is also
+    added to the global values directly. `SkinAutoencoder` maps the outputs to physical ranges.
 
     Halvings round up, and features are resized to those of the level above. So no size is padded or
     cropped.
@@ -57,7 +59,7 @@ class SkinEncoder(nn.Module):
         widths: Channels of the U-Net at each level, finest first.
 
     Raises:
-        InputError: if `widths` is empty.
+        InputError: If `widths` is empty.
 
     Source:
         Ronneberger et al. 2015 (U-Net); Perez et al. 2018 (FiLM, the modulation of the head); Hu et
@@ -146,9 +148,9 @@ class _AttentionPooling(nn.Module):
     """Mean log colours under attention, and a confidence-weighted vote on the light's tint.
 
     The white of an eye, a shirt or a grey wall shows the white balance, which an average of
-    features blurs. The network predicts the chroma that each pixel has under neutral light. What
-    remains of the pixel's chroma is its vote, weighted by the network's confidence (Hu et al. 2017,
-    FC4).
+    features blurs. The network predicts the chroma that each pixel has under neutral light. The
+    pixel's chroma minus this prediction is its vote, weighted by a predicted confidence (Hu et al.
+    2017, FC4).
     """
 
     def __init__(self, features: int) -> None:
@@ -168,8 +170,8 @@ class _AttentionPooling(nn.Module):
         attention = self.attention(x).flatten(2).softmax(-1).float()
         weights, confidence = attention.split([_POOLED_COLOURS, 1], 1)
         chroma = 10 * (small[:, ::2] - small[:, 1:2]) - self.expected_chroma(x)
-        # Sums rather than matrix products, which autocast would compute with eight bits; the tint
-        # is known more precisely than that.
+        # Sums rather than matrix products, which autocast would compute with eight bits of
+        # precision. The tint needs more.
         colours = (weights[:, :, None] * small.flatten(2)[:, None]).sum(-1)
         return colours.flatten(1), (confidence * chroma.flatten(2)).sum(-1)
 

@@ -19,6 +19,7 @@ MEAN_SHADING = 0.85
 """Mean shading of the skin of the synthetic faces."""
 
 _FAINT = 1e-4
+"""Added to specular reflection: the derivative of a square root is infinite at zero."""
 
 
 def appearance_l1(reconstruction: Image, photograph: Image, weight: Map) -> Scalar:
@@ -53,7 +54,7 @@ def mask_cross_entropy(maps: SkinMaps, mask: Map) -> Scalar:
     """Compute the cross entropy of the skin mask.
 
     Args:
-        maps: What the encoder read.
+        maps: Predicted maps.
         mask: Probability of skin.
 
     Returns:
@@ -68,7 +69,7 @@ def mask_cross_entropy(maps: SkinMaps, mask: Map) -> Scalar:
         >>> round(mask_cross_entropy(maps, mask).item(), 4)
         0.0
     """
-    # torch's own function refuses values that are not numbers, and on a GPU it ends the process.
+    # torch's own function raises an error for NaN; on a GPU it ends the process.
     skin = maps.mask.clamp(1e-6, 1 - 1e-6)
     return -(mask * skin.log() + (1 - mask) * (1 - skin).log()).mean()
 
@@ -79,12 +80,12 @@ def soft_iou(maps: SkinMaps, mask: Map) -> Scalar:
     Cross entropy alone leaves thin beards and loose hair near one half on either side.
 
     Args:
-        maps: What the encoder read.
+        maps: Predicted maps.
         mask: Probability of skin; a pixel above one half is skin.
 
     Returns:
         1 - (sum(p m) + 1) / (sum(p + m - p m) + 1), for prediction p and skin m. The added pixel
-        makes a prediction without skin right for a photograph without skin.
+        makes the loss 0 for a prediction without skin on a photograph without skin.
 
     Source:
         Rahman & Wang 2016, "Optimizing Intersection-Over-Union in Deep Neural Networks".
@@ -111,7 +112,7 @@ def pigment_l1(maps: SkinMaps, truth: SkinMaps) -> Scalar:
     would count.
 
     Args:
-        maps: What the encoder read.
+        maps: Predicted maps.
         truth: True maps and mask.
 
     Returns:
@@ -140,7 +141,7 @@ def pigment_mse(maps: SkinMaps, truth: SkinMaps) -> Scalar:
     which are those of dark skin and of much blood.
 
     Args:
-        maps: What the encoder read.
+        maps: Predicted maps.
         truth: True maps and mask.
 
     Returns:
@@ -170,11 +171,11 @@ def error_shading_covariance(maps: SkinMaps, truth: SkinMaps) -> Scalar:
     Pale skin in little light looks like dark skin in strong light. The best guess between the two
     has too little melanin where the light is strong, so its error falls with shading. The weight
     of this loss is the Lagrange multiplier of the constraint that errors do not depend on shading.
-    Too large a weight turns the sign of the covariance, and from seven eighths of the weight of
-    `pigment_l1` on the sum of both has no minimum.
+    Too large a weight reverses the sign of the covariance. From 7/8 of the weight of `pigment_l1`
+    on, the sum of both losses has no minimum.
 
     Args:
-        maps: What the encoder read.
+        maps: Predicted maps.
         truth: True maps and mask.
 
     Returns:
@@ -196,13 +197,13 @@ def error_shading_covariance(maps: SkinMaps, truth: SkinMaps) -> Scalar:
 
 
 def lighting_error(maps: SkinMaps, truth: SkinMaps) -> Scalar:
-    """Compute the absolute error of shading, and the squared error of root specular times ten.
+    """Compute the absolute error of shading plus ten times the squared error of root specular.
 
-    Most skin has hardly any specular reflection. An absolute error would be least for a prediction
-    without any.
+    Most skin has hardly any specular reflection. An absolute error would be smallest for a
+    prediction without any.
 
     Args:
-        maps: What the encoder read.
+        maps: Predicted maps.
         truth: True maps.
 
     Returns:
@@ -226,7 +227,7 @@ def white_balance_l1(capture: Capture, truth: Capture) -> Scalar:
     """Compute the mean absolute error of the white balance, in standard deviations.
 
     Args:
-        capture: What the encoder read.
+        capture: Predicted capture.
         truth: The true capture.
 
     Returns:

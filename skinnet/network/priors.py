@@ -41,7 +41,7 @@ def specular_sparsity(maps: SkinMaps, mask: Map) -> Scalar:
     This is an L1 prior: highlights are rare, not absent.
 
     Args:
-        maps: What the encoder read.
+        maps: Predicted maps.
         mask: Probability of skin.
 
     Returns:
@@ -63,7 +63,7 @@ def shading_smoothness(maps: SkinMaps, mask: Map) -> Scalar:
     """Compute the mean absolute gradient of log shading on skin.
 
     Args:
-        maps: What the encoder read.
+        maps: Predicted maps.
         mask: Probability of skin.
 
     Returns:
@@ -87,10 +87,10 @@ def shading_from_luminance(maps: SkinMaps, photograph: Image, mask: Map) -> Scal
     """Compare log shading with the log of the photograph's smoothed luminance.
 
     On skin of one colour, the low frequencies of shading are those of luminance. Each photograph's
-    mean difference is removed, because exposure and albedo trade against the level of shading.
+    mean difference is removed, because exposure and albedo can compensate for the level of shading.
 
     Args:
-        maps: What the encoder read.
+        maps: Predicted maps.
         photograph: Linear sRGB.
         mask: Probability of skin.
 
@@ -115,10 +115,10 @@ def shading_from_luminance(maps: SkinMaps, photograph: Image, mask: Map) -> Scal
 
 
 def off_skin_shading(maps: SkinMaps, mask: Map) -> Scalar:
-    """Penalise shading where there is no skin, so that skin explains skin alone.
+    """Penalise shading off skin, so that the skin model explains only skin.
 
     Args:
-        maps: What the encoder read.
+        maps: Predicted maps.
         mask: Probability of skin.
 
     Returns:

@@ -12,7 +12,8 @@ _MAX_STEPS, _LAST_STEP = 8, 1e-3
 """Largest number of Newton steps, and the length in nodes below which a step is the last."""
 
 _CONVEX = 0.1
-"""Least determinant of the Hessian that Newton's step trusts, as a share of Gauss and Newton's."""
+"""Smallest determinant of the Hessian for which Newton's step is used, relative to that of the
+Gauss-Newton matrix."""
 
 
 class Derivatives(NamedTuple):
@@ -58,14 +59,14 @@ class ColourSurface:
         """Compute the colours at positions, and their derivatives."""
         cell, u, v = self._cells(position)
         a, b, c = cell[:, 0], cell[:, 1], cell[:, 2]
-        value, slope, curve = a + v * (b + v * c), b + 2 * v * c, c
+        value, first, second = a + v * (b + v * c), b + 2 * v * c, c
         return Derivatives(
             value[0] + u * (value[1] + u * value[2]),
             2 * value[1] + 4 * u * value[2],
-            2 * (slope[0] + u * (slope[1] + u * slope[2])),
+            2 * (first[0] + u * (first[1] + u * first[2])),
             8 * value[2],
-            4 * (slope[1] + 2 * u * slope[2]),
-            8 * (curve[0] + u * (curve[1] + u * curve[2])),
+            4 * (first[1] + 2 * u * first[2]),
+            8 * (second[0] + u * (second[1] + u * second[2])),
         )
 
     def _cells(
@@ -83,9 +84,9 @@ class ColourSurface:
     ) -> Float[np.ndarray, "2 points"]:
         """Find the position of the point closest to each colour, from a position near it.
 
-        Newton's steps minimise the squared distance within the grid. They are Gauss and Newton's
-        where the distance is not convex. A colour is done when its step is below a thousandth of a
-        node: convergence is quadratic, so the next step would be about a millionth.
+        Newton's steps minimise the squared distance within the grid; Gauss-Newton steps replace
+        them where the distance is not convex. A colour is done when its step is below a thousandth
+        of a node: convergence is quadratic, so the next step would be about a millionth.
         """
         position = start.copy()
         moving = np.arange(position.shape[1])
@@ -123,7 +124,7 @@ def clipped_newton_step(
 
     Args:
         descent: Negative gradient where the step starts.
-        hessian: Second derivatives by the first variable twice, both, and the second twice.
+        hessian: Second derivatives: by the first variable twice, by both, by the second twice.
         low: Least step, at most 0.
         high: Greatest step, at least 0.
 

@@ -28,9 +28,9 @@ class PigmentAxis(NamedTuple):
 
     @property
     def scale_and_shift(self) -> tuple[float, float]:
-        """What takes log(f + spacing) to the position of f: position = scale * log + shift.
+        """Scale and shift in position = scale * log(f + spacing) + shift.
 
-        A caller folds its own linear map into the two, so that a map of pixels is read once.
+        A caller can combine them with its own linear map, so that it passes over a map only once.
         """
         scale = 1 / self.step
         return scale, -math.log(self.low + self.spacing) * scale

@@ -14,7 +14,7 @@ from torch import Tensor
 def read_table(name: str) -> dict[str, Float[Tensor, "wavelength"]]:
     """Read the columns of `skinnet/physics/tables/NAME.csv` by their heading, float64 [33].
 
-    Units and source stand in the file's first line.
+    The file's first line gives units and source.
     """
     head, *rows = read_rows(name)
     values = torch.tensor(np.array(rows, dtype=float))

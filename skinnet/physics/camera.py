@@ -91,7 +91,7 @@ class SpectralCamera(nn.Module):
     def forward(
         self, reflectance: Float[Tensor, "*shape wavelength"], capture: Capture | None = None
     ) -> Float[Tensor, "*shape 3"]:
-        """Photograph reflectance spectra (equation 4).
+        """Render reflectance spectra as linear sRGB (equation 4).
 
         Args:
             reflectance: Spectra whose leading axes are those of `capture`, then any others.

@@ -15,7 +15,7 @@ from skinnet.physics.reflectance import SkinReflectance
 
 
 class SkinDecoder(nn.Module):
-    """Photograph of skin: image = shading * albedo(f_mel, f_blood) + specular * white + offset.
+    """Renders skin: image = shading * albedo(f_mel, f_blood) + specular * white + offset.
 
     The fast mode interpolates a colour table that is computed for each image's light and camera.
     Otherwise the closed form is evaluated at 33 bands for every pixel. The two agree within 5e-4 in
@@ -79,7 +79,8 @@ class SkinDecoder(nn.Module):
             Linear sRGB, not clipped.
 
         Raises:
-            InputError: For a fraction that is NaN, negative or above one, and for what is no map.
+            InputError: For a fraction that is NaN, negative or above one, and for maps of different
+                size or with fewer than two axes.
         """
         f_mel = check_fraction("f_mel", f_mel, like=self.camera.mean)
         f_blood = check_fraction("f_blood", f_blood, like=self.camera.mean)

@@ -37,7 +37,7 @@ def kubelka_munk(
 def _kubelka_munk_printed(
     k: Float[Tensor, "*shape"], s: Float[Tensor, "*#shape"], d: Float[Tensor, "*#shape"]
 ) -> Float[Tensor, "*shape"]:
-    """The same layer with the denominator that section 3.3 misprints, for the record only."""
+    """The same layer with the denominator that section 3.3 misprints, for comparison only."""
     beta2 = k / (k + 2 * s)
     decay = torch.exp(-2 * torch.sqrt(k * (k + 2 * s)) * d)
     return (1 - beta2) * (1 - decay) / ((1 + beta2) - (1 - beta2) * decay)

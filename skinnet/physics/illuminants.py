@@ -8,6 +8,7 @@ from skinnet.physics._tables import read_table
 
 _UP_TO_7000_K = (-4.6070e9, 2.9678e6, 0.09911e3, 0.244063)
 _ABOVE_7000_K = (-2.0064e9, 1.9018e6, 0.24748e3, 0.237040)
+"""Coefficients of T^-3, T^-2, T^-1 and 1 in the chromaticity x of daylight."""
 
 
 def daylight(
@@ -16,8 +17,8 @@ def daylight(
 ) -> Float[Tensor, "*batch wavelength"]:
     """Compute the relative power of CIE daylight.
 
-    The weights of the components are not rounded as the standard rounds them, so that they have a
-    gradient.
+    The standard rounds the weights of the components. They are not rounded here, so that they have
+    a gradient.
 
     Args:
         temperature: Correlated colour temperature, 4,000 to 25,000 K.

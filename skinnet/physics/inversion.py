@@ -25,11 +25,11 @@ have more, and a fraction that is clipped is lost.
 """
 
 _TOLERANCE = 0.02
-"""Distance in linear RGB within which a colour is on the manifold: about three steps of 8 bits, and
-what two parameters leave unexplained of a measured spectrum."""
+"""Distance in linear RGB within which a colour is on the manifold. It is about three steps of 8-bit
+sRGB on pale skin. The colours of measured spectra differ by about as much from the model's."""
 
 _MAX_COLOUR = 1e6
-"""A colour beyond this is damaged, as is one that is NaN."""
+"""A colour with a larger value gives NaN, as does one that is NaN."""
 
 _COLOURS_AT_A_TIME, _ROWS_AT_A_TIME = 1 << 14, 16
 
@@ -54,7 +54,7 @@ class Inversion(NamedTuple):
 
 
 class SkinInverse:
-    """Inverse rendering by a look-up table of colours. `SkinLookup.inverse` makes one.
+    """Inverse rendering by a look-up table of colours. `SkinLookup.inverse` constructs it.
 
     The nearest node in linear RGB is the paper's answer. Beyond the paper, Newton's steps go on
     from the node to the closest point of the surface through the table, which has the colours of
@@ -123,8 +123,8 @@ class SkinInverse:
 
         Args:
             rgb: Linear RGB [*shape, 3], of any size and sign.
-            refine: Go on from the nearest node to the closest point of the surface; otherwise the
-                answer is the node, as in the paper.
+            refine: Whether to go on from the nearest node to the closest point of the surface;
+                otherwise the result is the node, as in the paper.
             tolerance: Distance in linear RGB within which a colour is on the manifold.
 
         Returns:
@@ -192,7 +192,7 @@ def _is_on_manifold(
     tolerance: float,
     slack: float,
 ) -> Bool[np.ndarray, "points"]:
-    """Whether offsets are within the tolerance and do not ask for fractions beyond the table.
+    """Whether offsets are within the tolerance and do not point to fractions beyond the table.
 
     At the table's border an offset has a component along the surface, outward. A tenth of the
     tolerance is allowed, and `slack` steps.

@@ -77,7 +77,7 @@ class SkinLookup(nn.Module):
         self.register_buffer("table", self._tabulate(), persistent=False)
 
     def spectra(self) -> Float[Tensor, "mel blood wavelength"]:
-        """Reflectance at the nodes; the outermost, outside [0, 1], are extrapolated."""
+        """Return the reflectance at the nodes; the outermost, outside [0, 1], are extrapolated."""
         fixed = next(self.reflectance.parameters(), None) is None
         return self.table if fixed else self._tabulate()
 

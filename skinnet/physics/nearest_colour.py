@@ -6,7 +6,7 @@ import numpy as np
 from jaxtyping import Float, Int
 
 _PAIRS = 1 << 19
-"""Comparisons of a colour with a node that take about as long as dividing a box."""
+"""Number of comparisons of a colour with a node that take about as long as dividing a box."""
 
 _BITS = 10
 """Bits of a box's coordinate in each channel; 30 fit an int32."""
@@ -37,7 +37,7 @@ class NearestColour:
         colours: Grid of colours [rows, columns, 3].
 
     Source:
-        Section 4.4 of Alotaibi & Smith 2017 names the search; the way to do it is our own.
+        Section 4.4 of Alotaibi & Smith 2017 names the search; the method is our own.
 
     Example:
         >>> grey = np.linspace(0, 1, 6).reshape(2, 3, 1) * np.ones(3)
@@ -79,8 +79,8 @@ class NearestColour:
     def _boxes(self, colours: Float[np.ndarray, "colours 3"]) -> Int[np.ndarray, "colours"]:
         """Morton code of the smallest box that holds each colour.
 
-        Boxes are of equal size in the square root of a colour, because nodes crowd where skin is
-        dark.
+        Boxes are of equal size in the square root of a colour, because nodes are densest where skin
+        is dark.
         """
         root = np.sqrt(np.abs(colours) * (4.0 ** (_BITS - 3) / self._scale))
         axis = np.copysign(root, colours) + 2.0 ** (_BITS - 1)

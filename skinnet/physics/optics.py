@@ -42,8 +42,8 @@ class SkinOptics:
         f_oxy: Share of oxygenated hemoglobin, in [0, 1] (Table 1).
         d_epd: Thickness of the epidermis, cm (Table 1).
         d_pd: Thickness of the papillary dermis, cm (Table 1).
-        d_base: Path of the epidermis' baseline absorption, cm; None: `d_epd`. The print has none,
-            which is 1.
+        d_base: Path of the epidermis' baseline absorption, cm; None: `d_epd`. The printed equation
+            has no such factor, which is the same as 1.
         r_vessel: Radius of blood vessels, cm; 0: no pigment packaging, as in the paper.
         blood_epd: Blood in the epidermis, as a fraction of f_blood; not in the paper.
         base_floor: Constant of the baseline absorption, cm^-1 (Table 2).
@@ -184,5 +184,5 @@ PRESETS: Mapping[str, SkinOptics] = MappingProxyType(
 - `calibrated` (default): `paper` with blood in vessels of 20 um radius.
 - `paper`: Tables 1 to 3 in consistent units.
 - `authors`: the constants of the authors' later MATLAB release (github.com/ssma502/SkinModel).
-- `printed`: the paper's text, literally. It makes every skin black and is kept for the record.
+- `printed`: the paper's text, literally. It makes every skin black and is kept for comparison.
 """

@@ -16,11 +16,11 @@ class SkinReflectance(nn.Module):
 
     R_total = T_epidermis(f_mel)^2 R_dermis(f_blood) at the 33 bands of `WAVELENGTHS`.
 
-    The model departs from the print, for these reasons. The baseline absorption of the epidermis is
-    multiplied by its thickness, because an exponent has no dimension. The denominator of R_dermis
-    is Kubelka-Munk's; the printed one gives R = 1 without absorption. Blood is packed into vessels
-    of radius r, mu -> mu (1 - exp(-2 mu r)) / (2 mu r), without which two parameters do not explain
-    skin.
+    The model differs from the printed equations in three ways. The baseline absorption of the
+    epidermis is multiplied by its thickness, because an exponent has no dimension. The denominator
+    of R_dermis is Kubelka-Munk's; the printed one gives R = 1 without absorption. Blood is packed
+    into vessels of radius r, mu -> mu (1 - exp(-2 mu r)) / (2 mu r); without it two parameters do
+    not explain skin.
 
     Args:
         optics: Constants, or the name of a preset. One that is an `nn.Parameter` is a parameter

@@ -35,7 +35,7 @@ def _chromaticity_to_xyz(xy: Float[Tensor, "*batch 2"]) -> Float[Tensor, "*batch
 def luminance(
     linear: Float[Tensor, "*batch 3 height width"],
 ) -> Float[Tensor, "*batch 1 height width"]:
-    """Weigh the channels of linear sRGB into relative luminance, CIE's Y.
+    """Compute the relative luminance, CIE's Y, of linear sRGB.
 
     The weights are .2126, .7152 and .0722, not those of video (.299, .587, .114), which belong to
     signals that are not linear.
@@ -44,7 +44,7 @@ def luminance(
         linear: Linear sRGB; white is (1, 1, 1).
 
     Returns:
-        Luminance relative to white, 1 for white; of any size and sign where the input is.
+        Luminance relative to white, not clipped; 1 for white.
 
     Source:
         IEC 61966-2-1, the second row of the matrix from linear sRGB to XYZ.

@@ -22,11 +22,11 @@ class ColourTable:
 
     Nodes are evenly spaced in the square root of a fraction: they are densest at small fractions,
     where colours change fastest, and a square root is cheap. On 2^18 pixels a call takes 3/4 of the
-    time of three calls of `scipy.ndimage.map_coordinates`, with results equal to rounding.
+    time of three calls of `scipy.ndimage.map_coordinates`, with the same results up to rounding.
 
     Args:
-        colours: linear RGB [melanin, hemoglobin, 3] at the nodes.
-        top: fractions of melanin and hemoglobin at the last nodes; the first ones are at 0.
+        colours: Linear RGB [melanin, hemoglobin, 3] at the nodes.
+        top: Fractions of melanin and hemoglobin at the last nodes; the first ones are at 0.
     """
 
     def __init__(self, colours: NDArray[np.float32], top: tuple[float, float]) -> None:

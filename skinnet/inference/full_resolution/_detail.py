@@ -1,8 +1,9 @@
 """Pigment detail finer than the network's maps, from the photograph's chromaticity.
 
 The network's maps are coarse, but they come with the light and the camera. The photograph's colours
-are fine, but they do not tell the light. So log chromaticity is split into octaves between half of
-the photograph's size and the network's size, and each octave is inverted about the network's maps:
+are fine, but they do not determine the light. So log chromaticity is split into octaves between
+half of the photograph's size and the network's size, and each octave is inverted about the
+network's maps:
 
     (log R/G, log B/G) = J (melanin, square root of hemoglobin),
 
@@ -39,13 +40,13 @@ _NOISE_WEIGHT = 1.5
 """Variances of noise at which an octave's energy is halved."""
 
 _GRAIN_WEIGHT = 2.0
-"""Variances of an octave over all skin that are taken as noise: what is everywhere is more often
-the picture's grain than the skin's."""
+"""Variances of an octave over all skin that are taken as noise: detail that is everywhere is more
+often noise of the photograph than texture of the skin."""
 
 _SUBSAMPLING_WEIGHT, _BLOCK_WEIGHT = 2.0, 0.08
-"""Shares of luma's energy that are taken as noise of chromaticity: in the direction in which
-chromaticity changes where a file holds the detail of luma alone, and in all directions, for the
-artefacts of JPEG's blocks."""
+"""Shares of luma's energy that are taken as noise of chromaticity. The first applies to the
+direction in which chromaticity changes where only luma has detail, because of chroma subsampling.
+The second applies to all directions, because of the artefacts of JPEG's blocks."""
 
 _ENERGY_WINDOW, _SURROUND_WINDOW = 5, 9
 """Pixels of an octave over which its energy is averaged, and that of its surroundings; the latter
@@ -53,7 +54,7 @@ is half a block of JPEG's chromaticity."""
 
 _EPSILON = np.float32(1e-12)
 _MIN_PIXELS = 64
-"""Least pixels of skin on which noise can be measured."""
+"""Smallest number of skin pixels from which noise can be measured."""
 
 
 def recover_detail(
@@ -169,7 +170,7 @@ def _convert_to_fractions(
     """Changes of melanin and of the root of hemoglobin as changes of both fractions."""
     melanin = resize_channel(maps["melanin"], size)
     root = np.sqrt(resize_channel(maps["hemoglobin"], size))
-    # At least a tenth of a pigment is left: skin without any is an artefact of the picture.
+    # At least a tenth of a pigment is left: skin without pigment is an artefact of the photograph.
     least = np.float32(0.1)
     change = np.maximum(detail[0], (least - 1) * melanin)
     changed = np.maximum(root + detail[1], least**0.5 * root)

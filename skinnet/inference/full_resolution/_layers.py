@@ -71,11 +71,11 @@ def sharpen_layers(
 
     Args:
         crop: uint8 sRGB [H, W, 3].
-        maps: the network's maps of the crop, [h, w] or [h, w, 3].
-        decoded: the decoder's picture of these maps, sRGB [h, w, 3] in [0, 1].
-        table: colours of skin under the light and camera of the crop.
-        shading_top: largest shading.
-        threads: number of threads; None for all cores.
+        maps: The network's maps of the crop, [h, w] or [h, w, 3].
+        decoded: The decoder's picture of these maps, sRGB [h, w, 3] in [0, 1].
+        table: Colours of skin under the light and camera of the crop.
+        shading_top: Largest shading.
+        threads: Number of threads; None for all cores.
 
     Returns:
         Layers [H, W] or [H, W, 3].

@@ -58,6 +58,6 @@ def test_a_file_with_other_outputs_is_refused(tmp_path: Path) -> None:
     helper.set_model_props(model, {"skinnet.kind": "encoder", "skinnet.format": "1"})
     onnx.save(model, tmp_path / "a.onnx")
     with pytest.raises(
-        InputError, match="says that it is an encoder, but its inputs are x and its outputs y"
+        InputError, match="is labelled as an encoder, but its inputs are x and its outputs y"
     ):
         Decomposer(tmp_path / "a.onnx").load()
