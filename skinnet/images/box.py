@@ -4,9 +4,16 @@ from typing import NamedTuple
 
 
 class Box(NamedTuple):
-    """A rectangle of pixels; `right` and `bottom` are the first column and row outside it.
+    """A rectangle of pixels.
+
+    Attributes:
+        left: First column inside.
+        top: First row inside.
+        right: First column outside.
+        bottom: First row outside.
 
     Example:
+        >>> from skinnet.images import Box
         >>> box = Box(10, 20, 40, 60)
         >>> box.width, box.height
         (30, 40)

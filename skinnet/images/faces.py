@@ -40,6 +40,7 @@ def find_face(photo: NDArray[np.uint8]) -> Box | None:
 
     Example:
         >>> from skimage.data import astronaut
+        >>> from skinnet.images import find_face
         >>> find_face(astronaut())
         Box(left=170, top=62, right=277, bottom=169)
     """
@@ -69,6 +70,7 @@ def frame_head(face: Box, width: int, height: int, margin: float = 2.0) -> Box:
         The square, or the part of it that is inside the photograph.
 
     Example:
+        >>> from skinnet.images import Box, frame_head
         >>> frame_head(Box(40, 40, 60, 60), 100, 100)
         Box(left=30, top=29, right=70, bottom=69)
     """

@@ -37,6 +37,7 @@ def read_photo(
 
     Example:
         >>> from io import BytesIO
+        >>> from skinnet.images import read_photo
         >>> read_photo(BytesIO(b"P6 2 1 255 " + bytes([255, 0, 0, 0, 0, 255]))).tolist()
         [[[255, 0, 0], [0, 0, 255]]]
     """
@@ -70,6 +71,8 @@ def as_photo(image: str | Path | Image.Image | NDArray[Any]) -> NDArray[np.uint8
         InputError: The image is of another type, shape or range, or cannot be read.
 
     Example:
+        >>> import numpy as np
+        >>> from skinnet.images import as_photo
         >>> as_photo(np.array([[0.0, 1.0]])).tolist()
         [[[0, 0, 0], [255, 255, 255]]]
     """
@@ -96,7 +99,10 @@ def write_png(path: Path, array: NDArray[Any], text: Mapping[str, str] | None = 
         ValueError: The array is of another type or shape.
 
     Example:
+        >>> from pathlib import Path
+        >>> import numpy as np
         >>> from tempfile import mkdtemp
+        >>> from skinnet.images import read_photo, write_png
         >>> path = Path(mkdtemp()) / "a.png"
         >>> write_png(path, np.full((2, 3, 3), 7, np.uint8))
         >>> read_photo(path).shape

@@ -21,6 +21,8 @@ def resize(pixels: Pixels, width: int, height: int) -> Pixels:
         The resized pixels, of the same type.
 
     Example:
+        >>> import numpy as np
+        >>> from skinnet.images import resize
         >>> ramp = np.array([[0, 1], [0, 1]], np.float32)
         >>> resize(ramp, 4, 1).tolist()
         [[0.0, 0.25, 0.75, 1.0]]

@@ -47,6 +47,7 @@ def segment_skin(photo: NDArray[np.uint8], face: Box) -> NDArray[np.float32]:
 
     Example:
         >>> from skimage.data import astronaut
+        >>> from skinnet.images import Box, segment_skin
         >>> mask = segment_skin(astronaut(), Box(176, 71, 268, 163))
         >>> bool(mask[125, 224] > 0.8), bool(mask[300, 200] < 0.2)  # nose, suit
         (True, True)

@@ -22,6 +22,8 @@ def srgb_to_linear(srgb: NDArray[Any]) -> NDArray[np.float32]:
         IEC 61966-2-1.
 
     Example:
+        >>> import numpy as np
+        >>> from skinnet.images import srgb_to_linear
         >>> [round(float(v), 4) for v in srgb_to_linear(np.array([0, 128, 255], np.uint8))]
         [0.0, 0.2159, 1.0]
     """
@@ -45,6 +47,8 @@ def linear_to_srgb(linear: NDArray[Any]) -> NDArray[np.float32]:
         IEC 61966-2-1.
 
     Example:
+        >>> import numpy as np
+        >>> from skinnet.images import linear_to_srgb
         >>> (255 * linear_to_srgb(np.array([0, 0.2159, 2.0]))).round().tolist()
         [0.0, 128.0, 255.0]
     """
@@ -63,6 +67,8 @@ def to_uint8(srgb: NDArray[Any]) -> NDArray[np.uint8]:
         uint8 of the same shape.
 
     Example:
+        >>> import numpy as np
+        >>> from skinnet.images import to_uint8
         >>> to_uint8(np.array([-0.1, 0.5, 1.0])).tolist()
         [0, 128, 255]
     """

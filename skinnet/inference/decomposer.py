@@ -51,6 +51,7 @@ class Decomposer:
 
     Example:
         >>> from skimage.data import astronaut
+        >>> from skinnet.inference import Decomposer
         >>> decomposition = Decomposer()(astronaut())
         >>> skin = decomposition.mask > 0.5
         >>> print(f"{decomposition.melanin[skin].mean():.2f}")
@@ -148,6 +149,7 @@ class Decomposer:
 
         Example:
             >>> from skimage.data import astronaut
+            >>> from skinnet.inference import Decomposer
             >>> edited = Decomposer().edit(astronaut(), melanin=2.0)
             >>> bool(edited[125, 224].mean() < astronaut()[125, 224].mean())  # the nose
             True

@@ -71,7 +71,11 @@ class Decomposition:
         )
 
     def maps(self) -> dict[str, NDArray[np.float32]]:
-        """Return all maps [H, W] by name; the offset is split into `offset_r` to `offset_b`."""
+        """Return all maps by name.
+
+        Returns:
+            Maps [H, W]; the channels of the offset are `offset_r`, `offset_g` and `offset_b`.
+        """
         names = ("melanin", "hemoglobin", "shading", "specular", "mask")
         channels = {f"offset_{name}": self.offset[..., i] for i, name in enumerate("rgb")}
         return {name: getattr(self, name) for name in names} | channels
@@ -81,6 +85,9 @@ class Decomposition:
 
         Args:
             name: A key of `maps()`.
+
+        Returns:
+            The entry of `output_info`.
         """
         return self.output_info[name.removesuffix("_r").removesuffix("_g").removesuffix("_b")]
 

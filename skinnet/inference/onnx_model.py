@@ -36,7 +36,13 @@ _RUNTIME_ERRORS = (
 
 
 class OutputInfo(NamedTuple):
-    """Unit, range and description of one output of the encoder."""
+    """Unit, range and description of one output of the encoder.
+
+    Attributes:
+        unit: Unit of the values.
+        range: Smallest and largest value.
+        description: What the values measure.
+    """
 
     unit: str
     range: tuple[float, float]
@@ -57,6 +63,8 @@ class OnnxModel:
         output_info: Unit, range and description of each map of the encoder; empty for a decoder.
 
     Example:
+        >>> import numpy as np
+        >>> from skinnet.inference import SHIPPED_ENCODER, open_model
         >>> encoder = open_model(SHIPPED_ENCODER, "encoder", threads=1)
         >>> maps = encoder.run({"image": np.full((1, 64, 48, 3), 180, np.uint8)})
         >>> maps["melanin"].shape, encoder.output_info["melanin"].unit
@@ -102,6 +110,8 @@ def get_decoder_path(encoder: Path) -> Path:
         X.decoder.onnx in the same folder.
 
     Example:
+        >>> from pathlib import Path
+        >>> from skinnet.inference import get_decoder_path
         >>> get_decoder_path(Path("runs/skin.onnx")).name
         'skin.decoder.onnx'
     """
@@ -124,6 +134,7 @@ def open_model(path: Path, kind: str, threads: int | None = None) -> OnnxModel:
             the other kind.
 
     Example:
+        >>> from skinnet.inference import SHIPPED_ENCODER, open_model
         >>> open_model(SHIPPED_ENCODER, "encoder").working_size
         160
     """

@@ -48,6 +48,7 @@ def draw_panel(photo: NDArray[np.uint8], decomposition: Decomposition) -> NDArra
     Example:
         >>> from skimage.data import astronaut
         >>> from skinnet import Decomposer
+        >>> from skinnet.inference import draw_panel
         >>> draw_panel(astronaut(), Decomposer()(astronaut())).shape
         (806, 1290, 3)
     """
@@ -78,6 +79,8 @@ def draw_grid(tiles: Sequence[Image.Image], columns: int) -> NDArray[np.uint8]:
         uint8 sRGB [h, w, 3].
 
     Example:
+        >>> import numpy as np
+        >>> from skinnet.inference import draw_grid, draw_picture
         >>> tile = draw_picture("black", np.zeros((8, 8, 3), np.uint8))
         >>> draw_grid([tile] * 3, 2).shape
         (806, 654, 3)
@@ -100,6 +103,8 @@ def draw_picture(caption: str, pixels: NDArray[np.uint8]) -> Image.Image:
         The tile.
 
     Example:
+        >>> import numpy as np
+        >>> from skinnet.inference import draw_picture
         >>> draw_picture("grey", np.full((50, 80, 3), 128, np.uint8)).size
         (300, 376)
     """
@@ -126,6 +131,8 @@ def draw_pigment_map(
         The tile.
 
     Example:
+        >>> import numpy as np
+        >>> from skinnet.inference import draw_pigment_map
         >>> draw_pigment_map("melanin", np.full((4, 4), 0.03), np.ones((4, 4))).size
         (300, 376)
     """

@@ -46,9 +46,11 @@ def write_results(
         InputError: The folder cannot be written.
 
     Example:
+        >>> from pathlib import Path
         >>> from tempfile import mkdtemp
         >>> from skimage.data import astronaut
         >>> from skinnet import Decomposer
+        >>> from skinnet.inference import write_results
         >>> photo, folder = astronaut(), Path(mkdtemp())
         >>> decomposition = Decomposer()(photo, detail=False)
         >>> write_results(folder, "a", photo, decomposition, decomposition.summary())

@@ -47,6 +47,8 @@ class SpectralCamera(nn.Module):
         both.
 
     Example:
+        >>> import torch
+        >>> from skinnet.physics import SpectralCamera
         >>> camera = SpectralCamera()
         >>> white, grey = camera(torch.stack([torch.ones(33), torch.full((33,), 0.2)]))
         >>> [round(value, 4) for value in white.tolist() + grey.tolist()]
@@ -107,6 +109,9 @@ class SpectralCamera(nn.Module):
 
         Args:
             shape: Leading axes of the capture.
+
+        Returns:
+            The capture.
         """
         return Capture.standard(len(self.lights) + 1, len(self.basis), shape, self.mean)
 
@@ -115,6 +120,9 @@ class SpectralCamera(nn.Module):
 
         Args:
             capture: Light and camera of each photograph.
+
+        Returns:
+            The matrices; a spectrum times a matrix is linear sRGB.
         """
         sensitivity = self.sensitivity(capture.camera)
         power = self.mix_lights(capture.light, capture.temperature)
@@ -144,6 +152,9 @@ class SpectralCamera(nn.Module):
 
         Args:
             coefficients: Coefficients of the components, in standard deviations.
+
+        Returns:
+            Sensitivities of R, G and B.
         """
         return self.mean + torch.einsum("...c,cwk->...wk", coefficients, self.basis)
 
@@ -186,7 +197,7 @@ def spectrum_to_srgb(
         Equation 4 of Alotaibi & Smith 2017; XYZ to sRGB by IEC 61966-2-1.
 
     Example:
-        >>> from skinnet.physics import load_camera, load_light, load_observer
+        >>> from skinnet.physics import load_camera, load_light, load_observer, spectrum_to_srgb
         >>> light, camera = load_light("A"), load_camera("Nikon D200")
         >>> white = spectrum_to_srgb(light, camera, load_observer()).sum(0)
         >>> [round(value, 6) for value in white.tolist()]

@@ -17,6 +17,7 @@ class Capture(NamedTuple):
         white_balance: Natural logarithm of the error in R/G and in B/G; zero is perfect.
 
     Example:
+        >>> import torch
         >>> from skinnet.physics import SpectralCamera
         >>> camera = SpectralCamera()
         >>> warm = camera.standard()._replace(temperature=torch.tensor(5000.0))
@@ -35,6 +36,9 @@ class Capture(NamedTuple):
         Args:
             batch: Shape of the batch, to which the leading axes are broadcast.
             dtype: Precision of the result.
+
+        Returns:
+            The capture, with `batch` as its leading axes.
         """
         leading = self.temperature.ndim
         return Capture(
@@ -52,6 +56,9 @@ class Capture(NamedTuple):
             components: Number of components of the camera basis.
             shape: Leading axes.
             like: Tensor whose precision and device the capture has.
+
+        Returns:
+            The capture.
         """
         like = torch.empty(()) if like is None else like
         light = like.new_zeros(*shape, lights)

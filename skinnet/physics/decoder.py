@@ -32,6 +32,8 @@ class SkinDecoder(nn.Module):
         dichromatic model adds shading and specular reflection.
 
     Example:
+        >>> import torch
+        >>> from skinnet.physics import SkinDecoder
         >>> decoder = SkinDecoder()
         >>> f_mel, f_blood = torch.full((2, 2), 0.03), torch.full((2, 2), 0.05)
         >>> red, green, blue = decoder(f_mel, f_blood)[:, 0, 0].tolist()
@@ -117,6 +119,9 @@ class SkinDecoder(nn.Module):
             specular: Specular reflection relative to the light; None: 0.
             offset: Linear sRGB that is added; None: 0.
             capture: Light and camera of each image.
+
+        Returns:
+            Linear sRGB, not clipped.
         """
         matrix = self.camera.matrix(capture).to(f_mel)
         image = self.albedo(f_mel, f_blood, matrix)
@@ -138,6 +143,9 @@ class SkinDecoder(nn.Module):
             f_mel: Melanosome volume fraction.
             f_blood: Blood volume fraction.
             matrix: Spectrum-to-RGB matrix of each image.
+
+        Returns:
+            Linear sRGB of the albedo.
         """
         if not self.fast:
             return apply_matrix(self.reflectance.bands(f_mel, f_blood), matrix).movedim(-1, -3)

@@ -27,6 +27,8 @@ def kubelka_munk(
         Section 3.3 of Alotaibi & Smith 2017 (R_dermis).
 
     Example:
+        >>> import torch
+        >>> from skinnet.physics import kubelka_munk
         >>> k, s, d = torch.tensor(0.0), torch.tensor(20.0), torch.tensor(0.2)
         >>> round(kubelka_munk(k, s, d).item(), 6)  # s d / (1 + s d)
         0.8

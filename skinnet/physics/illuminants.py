@@ -31,6 +31,8 @@ def daylight(
         CIE 015:2018, equations 4.5 to 4.9.
 
     Example:
+        >>> import torch
+        >>> from skinnet.physics import daylight
         >>> warm, cold = daylight(torch.tensor([5000.0, 9000.0]))
         >>> bool(cold[5] / cold[25] > warm[5] / warm[25])  # 450 nm over 650 nm
         True

@@ -46,7 +46,8 @@ class SkinLookup(nn.Module):
         Alotaibi & Smith 2017, section 4.4, precomputes such a table of colours.
 
     Example:
-        >>> from skinnet.physics import SkinReflectance, load_spectrum_to_srgb
+        >>> import torch
+        >>> from skinnet.physics import SkinLookup, SkinReflectance, load_spectrum_to_srgb
         >>> lookup = SkinLookup(SkinReflectance())
         >>> matrix = load_spectrum_to_srgb("D65", "mean").float()
         >>> f_mel, f_blood = torch.full((1, 1, 1), 0.05), torch.full((1, 1, 1), 0.04)
@@ -77,7 +78,11 @@ class SkinLookup(nn.Module):
         self.register_buffer("table", self._tabulate(), persistent=False)
 
     def spectra(self) -> Float[Tensor, "mel blood wavelength"]:
-        """Return the reflectance at the nodes; the outermost, outside [0, 1], are extrapolated."""
+        """Return the tabulated spectra.
+
+        Returns:
+            Reflectance at the nodes; at the outermost, outside [0, 1], it is extrapolated.
+        """
         fixed = next(self.reflectance.parameters(), None) is None
         return self.table if fixed else self._tabulate()
 
@@ -92,10 +97,13 @@ class SkinLookup(nn.Module):
         return PigmentAxis(0.0, 1.0, self.nodes[axis] - 1, self.spacing[axis])
 
     def fractions(self, axis: int) -> Float[Tensor, "nodes"]:
-        """Return 0, the fractions of the inner nodes, and 1.
+        """Return the fractions at which spectra are computed.
 
         Args:
             axis: 0 for f_mel, 1 for f_blood.
+
+        Returns:
+            0, the fractions of the inner nodes, and 1.
         """
         count = self.nodes[axis]
         position = (np.arange(count) - 0.5).clip(0, count - 2)
@@ -110,6 +118,9 @@ class SkinLookup(nn.Module):
 
         Args:
             matrix: Maps from reflectance to linear RGB, as `SpectralCamera.matrix`.
+
+        Returns:
+            Linear RGB at the nodes.
         """
         spectra = self.spectra().to(matrix)
         # One product for the whole batch: a batched one would copy the spectra for each image.
@@ -149,6 +160,9 @@ class SkinLookup(nn.Module):
             nodes: Nodes in f_mel and in f_blood.
             f_mel: Range of melanosome volume fractions.
             f_blood: Range of blood volume fractions.
+
+        Returns:
+            The inverse, for any number of colours.
 
         Raises:
             InputError: As `SkinInverse`.

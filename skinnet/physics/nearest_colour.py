@@ -40,6 +40,8 @@ class NearestColour:
         Section 4.4 of Alotaibi & Smith 2017 names the search; the method is our own.
 
     Example:
+        >>> import numpy as np
+        >>> from skinnet.physics import NearestColour
         >>> grey = np.linspace(0, 1, 6).reshape(2, 3, 1) * np.ones(3)
         >>> NearestColour(grey)(np.array([[0.9, 1.0, 1.1], [0.3, 0.2, 0.1]])).tolist()
         [5, 1]

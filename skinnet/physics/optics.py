@@ -64,6 +64,8 @@ class SkinOptics:
         Tables 1 to 3 of Alotaibi & Smith 2017.
 
     Example:
+        >>> from dataclasses import fields
+        >>> from skinnet.physics import SkinOptics
         >>> SkinOptics.preset("paper", d_pd=0.1).d_pd
         0.1
         >>> next(item.metadata["unit"] for item in fields(SkinOptics) if item.name == "d_pd")
@@ -116,6 +118,9 @@ class SkinOptics:
         Args:
             name: `calibrated`, `paper`, `authors` or `printed`.
             constants: New values of constants, by name.
+
+        Returns:
+            The constants.
 
         Raises:
             InputError: For an unknown preset or constant, or a value out of its range.

@@ -32,6 +32,8 @@ class SkinReflectance(nn.Module):
         1956; van Veen et al. 2002.
 
     Example:
+        >>> import torch
+        >>> from skinnet.physics import SkinReflectance
         >>> skin = SkinReflectance()
         >>> pale, dark = skin(torch.tensor([0.02, 0.2]), 0.04)
         >>> tuple(pale.shape), bool((dark < pale).all())
@@ -100,6 +102,9 @@ class SkinReflectance(nn.Module):
         Args:
             f_mel: Melanosome volume fraction.
             f_blood: Blood volume fraction.
+
+        Returns:
+            Reflectance at the 33 bands, in the last axis.
         """
         f_mel, f_blood = f_mel[..., None], f_blood[..., None]
         return self.epidermis_transmittance(f_mel, f_blood) ** 2 * self.dermis_reflectance(f_blood)
@@ -115,6 +120,9 @@ class SkinReflectance(nn.Module):
         Args:
             f_mel: Melanosome volume fraction.
             f_blood: Blood volume fraction.
+
+        Returns:
+            Transmittance in [0, 1].
         """
         d_base = self.d_epd if self.d_base is None else self.d_base
         f_hem = self.blood_epd * f_blood
@@ -133,6 +141,9 @@ class SkinReflectance(nn.Module):
 
         Args:
             f_blood: Blood volume fraction.
+
+        Returns:
+            Reflectance in [0, 1].
         """
         k = f_blood * self.mu_blood + (1 - f_blood) * self.mu_base
         s = self.mie * self.wavelengths**-1.5 + self.rayleigh * self.wavelengths**-4.0

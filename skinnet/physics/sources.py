@@ -42,6 +42,7 @@ def load_light(name: str) -> Float[Tensor, "wavelength"]:
         CIE 015:2018; e of section 3.5 of Alotaibi & Smith 2017.
 
     Example:
+        >>> from skinnet.physics import load_light
         >>> light = load_light("D65")
         >>> tuple(light.shape), round(light.sum().item(), 6)
         ((33,), 1.0)
@@ -73,6 +74,7 @@ def load_camera(name: str) -> Float[Tensor, "wavelength 3"]:
         S of section 3.5 of Alotaibi & Smith 2017, who used the Nikon D200.
 
     Example:
+        >>> from skinnet.physics import load_camera
         >>> tuple(load_camera("nikon d200").shape)
         (33, 3)
     """
@@ -102,6 +104,7 @@ def load_spectrum_to_srgb(light: str, camera: str) -> Float[Tensor, "wavelength 
         Equation 4 and section 4.3 of Alotaibi & Smith 2017; see `spectrum_to_srgb`.
 
     Example:
+        >>> from skinnet.physics import load_spectrum_to_srgb
         >>> matrix = load_spectrum_to_srgb("LED-B3", "Nikon D200")
         >>> [round(value, 6) for value in matrix.sum(0).tolist()]  # white
         [1.0, 1.0, 1.0]

@@ -23,6 +23,7 @@ def load_cameras() -> dict[str, Float[Tensor, "wavelength 3"]]:
         Academy Software Foundation, rawtoaces-data (Apache-2.0).
 
     Example:
+        >>> from skinnet.physics import load_cameras
         >>> cameras = load_cameras()
         >>> len(cameras), tuple(cameras["Nikon D200"].shape)
         (52, (33, 3))
@@ -46,6 +47,7 @@ def load_observer() -> Float[Tensor, "wavelength 3"]:
         CIE 015:2018.
 
     Example:
+        >>> from skinnet.physics import WAVELENGTHS, load_observer
         >>> int(WAVELENGTHS[load_observer()[:, 1].argmax()])  # the eye is most sensitive to green
         560
     """

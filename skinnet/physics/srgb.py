@@ -18,6 +18,7 @@ def srgb_to_xyz() -> Float[Tensor, "3 3"]:
         IEC 61966-2-1.
 
     Example:
+        >>> from skinnet.physics import srgb_to_xyz
         >>> [round(value, 4) for value in srgb_to_xyz().sum(1).tolist()]  # XYZ of white
         [0.9505, 1.0, 1.0891]
     """
@@ -50,6 +51,8 @@ def luminance(
         IEC 61966-2-1, the second row of the matrix from linear sRGB to XYZ.
 
     Example:
+        >>> import torch
+        >>> from skinnet.physics import luminance
         >>> green = torch.tensor([0.0, 1.0, 0.0])[:, None, None]
         >>> round(luminance(green).item(), 4)
         0.7152
@@ -73,6 +76,8 @@ def to_display(
         IEC 61966-2-1.
 
     Example:
+        >>> import torch
+        >>> from skinnet.physics import to_display
         >>> round(to_display(torch.full((3, 1, 1), 0.18)).mean().item(), 4)
         0.4614
     """
