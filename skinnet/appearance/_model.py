@@ -97,18 +97,41 @@ class AppearanceModel(nn.Module, ABC):
     @classmethod
     @abstractmethod
     def read_blocks(cls, stack: SubjectStack, mask: Bool[np.ndarray, "size size"]) -> FeatureBlocks:
-        """Prepare to read the features that the model is made of, inside a mask."""
+        """Prepare to read the features that the model is made of, inside a mask.
+
+        Args:
+            stack: The subjects.
+            mask: Texels that are read, [size, size].
+
+        Returns:
+            Blocks of the features of all subjects, read when they are iterated over.
+        """
 
     @classmethod
     @abstractmethod
     def default_scales(
         cls, grams: Float[np.ndarray, "channels subjects subjects"], texels: int
     ) -> Float[np.ndarray, "channels"]:
-        """Compute what each channel is divided by, unless `fit` is given scales."""
+        """Compute what each channel is divided by, unless `fit` is given scales.
+
+        Args:
+            grams: Gram matrices of the channels, [channels, subjects, subjects].
+            texels: Number of texels.
+
+        Returns:
+            Scales [channels].
+        """
 
     @abstractmethod
     def extract_features(self, texture: SkinTexture) -> Float32[np.ndarray, "channels texels"]:
-        """Compute the features of every texel of one subject."""
+        """Compute the features of every texel of one subject.
+
+        Args:
+            texture: The subject.
+
+        Returns:
+            Features [channels, texels].
+        """
 
     @abstractmethod
     def decode(

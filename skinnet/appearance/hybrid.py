@@ -27,6 +27,11 @@ class HybridModel(AppearanceModel):
 
     Fractions of a sample outside [0, 1] are clamped; `measure_clamping` gives their share.
 
+    Args:
+        statistics: Mean, basis and variances, as `fit` computes them.
+        mask: Texels that are modelled, [size, size].
+        colour: Light, camera and calibration of the textures.
+
     Source:
         Section 5 and Equations 9 to 11 of Alotaibi & Smith 2017.
 
@@ -67,24 +72,54 @@ class HybridModel(AppearanceModel):
 
     @classmethod
     def read_blocks(cls, stack: SubjectStack, mask: Bool[np.ndarray, "size size"]) -> FeatureBlocks:
-        """Prepare to read pigments and offset, inside a mask."""
+        """Prepare to read pigments and offset, inside a mask.
+
+        Args:
+            stack: The subjects.
+            mask: Texels that are read, [size, size].
+
+        Returns:
+            Blocks of the features of all subjects, read when they are iterated over.
+        """
         return stack.read_blocks(mask)
 
     @classmethod
     def default_scales(
         cls, grams: Float[np.ndarray, "channels subjects subjects"], texels: int
     ) -> Float[np.ndarray, "channels"]:
-        """Compute scales that give hemoglobin, melanin and the offset the same total variance."""
+        """Compute scales that give hemoglobin, melanin and the offset the same total variance.
+
+        Args:
+            grams: Gram matrices of the channels, [channels, subjects, subjects].
+            texels: Number of texels.
+
+        Returns:
+            Scales [channels].
+        """
         return compute_equal_variance(grams, texels)
 
     def extract_features(self, texture: SkinTexture) -> Float32[np.ndarray, "channels texels"]:
-        """Stack the pigments and the offset of one subject (Equation 9)."""
+        """Stack the pigments and the offset of one subject (Equation 9).
+
+        Args:
+            texture: The subject.
+
+        Returns:
+            Features [channels, texels].
+        """
         return texture.features()
 
     def decode(
         self, features: Float[Tensor, "*batch channels texels"]
     ) -> Float[Tensor, "*batch 3 texels"]:
-        """Decode pigments and offset to linear RGB (Equation 11)."""
+        """Decode pigments and offset to linear RGB (Equation 11).
+
+        Args:
+            features: Features [..., channels, texels].
+
+        Returns:
+            Linear RGB [..., 3, texels].
+        """
         rgb: Tensor = self.colour(features)
         return rgb
 
@@ -94,7 +129,16 @@ class HybridModel(AppearanceModel):
         grams: Float[np.ndarray, "channels subjects subjects"],
         texels: int | None,
     ) -> MixtureErrors:
-        """Prepare to compute RMS differences between decoded mixtures and subjects."""
+        """Prepare to compute RMS differences between decoded mixtures and subjects.
+
+        Args:
+            stack: The subjects.
+            grams: Gram matrices of the channels, [channels, subjects, subjects].
+            texels: Number of texels that are compared; None compares all.
+
+        Returns:
+            A function from weights of the subjects to errors.
+        """
         blocks = self.read_blocks(stack, subsample(self.mask, texels))
         return partial(compute_decoded_errors, blocks, self.colour.decode)
 

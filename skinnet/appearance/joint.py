@@ -25,6 +25,11 @@ class JointModel(nn.Module):
     alpha [..., S] and beta [..., K], and is differentiable. The larger the weight w, the more the
     components describe shape instead of appearance.
 
+    Args:
+        statistics: Mean, basis and variances, as `fit` computes them.
+        deviations: Standard deviations of the shape's coefficients, [S].
+        weight: The weight w.
+
     Source:
         Cootes et al. 2001, Active Appearance Models; section 7 of Alotaibi & Smith 2017 names the
         joint model as future work.

@@ -33,6 +33,11 @@ class LinearModel(AppearanceModel):
     Channels are not scaled unless `scales` [3] are given. Where a subject lacks a texel, the model
     takes the colour of the mean features.
 
+    Args:
+        statistics: Mean, basis and variances, as `fit` computes them.
+        mask: Texels that are modelled, [size, size].
+        colour: Light, camera and calibration of the textures.
+
     Source:
         Section 5, last paragraph, of Alotaibi & Smith 2017.
 
@@ -54,18 +59,41 @@ class LinearModel(AppearanceModel):
 
     @classmethod
     def read_blocks(cls, stack: SubjectStack, mask: Bool[np.ndarray, "size size"]) -> FeatureBlocks:
-        """Prepare to read linear RGB, inside a mask."""
+        """Prepare to read linear RGB, inside a mask.
+
+        Args:
+            stack: The subjects.
+            mask: Texels that are read, [size, size].
+
+        Returns:
+            Blocks of the features of all subjects, read when they are iterated over.
+        """
         return _ColourBlocks(stack.read_blocks(mask), stack.colour)
 
     @classmethod
     def default_scales(
         cls, grams: Float[np.ndarray, "channels subjects subjects"], texels: int
     ) -> Float[np.ndarray, "channels"]:
-        """Return ones: channels are not scaled."""
+        """Return ones: channels are not scaled.
+
+        Args:
+            grams: Gram matrices of the channels, [channels, subjects, subjects].
+            texels: Number of texels.
+
+        Returns:
+            Scales [channels].
+        """
         return np.ones(len(grams))
 
     def extract_features(self, texture: SkinTexture) -> Float32[np.ndarray, "channels texels"]:
-        """Compute the linear RGB of one subject."""
+        """Compute the linear RGB of one subject.
+
+        Args:
+            texture: The subject.
+
+        Returns:
+            Features [channels, texels].
+        """
         return self.colour.decode(texture.features())
 
     def colour_errors(
@@ -74,11 +102,27 @@ class LinearModel(AppearanceModel):
         grams: Float[np.ndarray, "channels subjects subjects"],
         texels: int | None,
     ) -> MixtureErrors:
-        """Prepare to compute RMS differences over the whole mask from inner products alone."""
+        """Prepare to compute RMS differences over the whole mask from inner products alone.
+
+        Args:
+            stack: The subjects.
+            grams: Gram matrices of the channels, [channels, subjects, subjects].
+            texels: Number of texels that are compared; None compares all.
+
+        Returns:
+            A function from weights of the subjects to errors.
+        """
         return partial(compute_errors, grams.sum(0) / self.statistics.mean.size)
 
     def decode(
         self, features: Float[Tensor, "*batch channels texels"]
     ) -> Float[Tensor, "*batch 3 texels"]:
-        """Return the features, which are linear RGB already."""
+        """Return the features, which are linear RGB already.
+
+        Args:
+            features: Features [..., channels, texels].
+
+        Returns:
+            Linear RGB [..., 3, texels].
+        """
         return features

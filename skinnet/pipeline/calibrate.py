@@ -101,7 +101,14 @@ class ColourSettings:
         return CalibratedColours(self, colour, calibration)
 
     def balance(self) -> Float[np.ndarray, "3"]:
-        """Compute the factors of the channels of a texture that make `white` grey."""
+        """Compute the factors of the channels of a texture that make `white` grey.
+
+        Returns:
+            Factors [3], relative to green; ones without `white`.
+
+        Raises:
+            InputError: `white` has a value outside 1 to 255.
+        """
         if self.white is None:
             return np.ones(3)
         if not all(0 < value <= 255 for value in self.white):

@@ -33,7 +33,15 @@ class SentenceParser(ArgumentParser):
     renamed: Mapping[str, str] = {}
 
     def error(self, message: str, ex: Exception | None = None) -> NoReturn:
-        """Raise `InputError` with the message on one line."""
+        """Raise `InputError` with the message on one line.
+
+        Args:
+            message: What is wrong.
+            ex: The exception behind it.
+
+        Raises:
+            InputError: Always.
+        """
         for old, new in self.renamed.items():
             # A key stands after a quote, dashes or a colon, perhaps as the end of a longer path.
             if re.search(rf"""(?:['"]|--|: )(?:\w+\.)*{re.escape(old)}(?=[.'"=\s]|$)""", message):
