@@ -21,6 +21,7 @@ import torch.nn.functional as F
 from jaxtyping import Float
 
 from benchmarks.report import Results, main
+from benchmarks.resources import read_resident_kb
 from skinnet.appearance import (
     HybridModel,
     LinearModel,
@@ -44,16 +45,18 @@ def make_person(size: int, seed: int) -> SkinTexture:
     """Make smooth maps in the range of skin: levels, regions, spots and small offsets."""
     rng = np.random.default_rng(seed)
     level = rng.standard_normal(2)
-    f_mel = 0.05 * np.exp(0.7 * level[0] + _noise(rng, size, {3: 0.25, 9: 0.15, 65: 0.05}))
-    f_blood = 0.045 * np.exp(0.2 * level[1] + _noise(rng, size, {4: 0.25, 11: 0.15, 65: 0.05}))
-    offset = np.stack([_noise(rng, size, {5: 0.004, 33: 0.002}) for _ in range(3)], -1)
+    f_mel = 0.05 * np.exp(0.7 * level[0] + _sample_noise(rng, size, {3: 0.25, 9: 0.15, 65: 0.05}))
+    f_blood = 0.045 * np.exp(
+        0.2 * level[1] + _sample_noise(rng, size, {4: 0.25, 11: 0.15, 65: 0.05})
+    )
+    offset = np.stack([_sample_noise(rng, size, {5: 0.004, 33: 0.002}) for _ in range(3)], -1)
     axis = (np.arange(size) + 0.5) / size - 0.5
     face = np.hypot(axis[:, None], axis) < FACE
     maps = (values.astype(np.float32) for values in (f_mel.clip(0, 1), f_blood.clip(0, 1), offset))
     return SkinTexture(*maps, face, f"person {seed}")
 
 
-def _noise(
+def _sample_noise(
     rng: np.random.Generator, size: int, nodes: dict[int, float]
 ) -> Float[np.ndarray, "size size"]:
     """Sum cubic surfaces through normal numbers on grids of so many nodes a side."""
@@ -74,25 +77,20 @@ def measure_process(folder: str, measured: bool) -> Results:
     """Measure the seconds of each step on a stack, and the resident peak of this process in GB."""
     stack = open_stack(Path(folder))
     seconds: dict[str, float] = {}
-    hybrid = _timed(seconds, "hybrid", lambda: HybridModel.fit(stack))
-    linear = _timed(seconds, "linear", lambda: LinearModel.fit(stack))
-    peak = _peak()
+    hybrid = _time(seconds, "hybrid", lambda: HybridModel.fit(stack))
+    linear = _time(seconds, "linear", lambda: LinearModel.fit(stack))
+    peak = read_resident_kb("VmHWM") / 1024**2
     if measured:
-        _timed(seconds, "measure_hybrid", lambda: measure(hybrid, stack))
-        _timed(seconds, "measure_linear", lambda: measure(linear, stack))
-    return {"seconds": seconds, "fit_peak_gb": peak, "peak_gb": _peak()}
+        _time(seconds, "measure_hybrid", lambda: measure(hybrid, stack))
+        _time(seconds, "measure_linear", lambda: measure(linear, stack))
+    return {"seconds": seconds, "fit_peak_gb": peak, "peak_gb": read_resident_kb("VmHWM") / 1024**2}
 
 
-def _timed(seconds: dict[str, float], name: str, work: Callable[[], Any]) -> Any:
+def _time(seconds: dict[str, float], name: str, work: Callable[[], Any]) -> Any:
     start = time.perf_counter()
     result = work()
     seconds[name] = time.perf_counter() - start
     return result
-
-
-def _peak() -> float:
-    lines = Path("/proc/self/status").read_text().splitlines()
-    return next(int(line.split()[1]) for line in lines if line.startswith("VmHWM")) / 1024**2
 
 
 def measure_separately(folder: Path, measured: bool) -> Results:

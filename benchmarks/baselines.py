@@ -83,7 +83,7 @@ class Tsumura:
         """Add pictures to the least-squares fit."""
         truth = pictures.truth
         assert truth.shading is not None
-        melanin, hemoglobin, shading = _coordinates(pictures)
+        melanin, hemoglobin, shading = _compute_coordinates(pictures)
         self.fits["melanin"].add(melanin, truth.melanin)
         self.fits["hemoglobin"].add(hemoglobin, truth.hemoglobin)
         self.fits["shading"].add(torch.exp(-shading), truth.shading)
@@ -92,7 +92,7 @@ class Tsumura:
 
     def __call__(self, pictures: Pictures) -> Pixels:
         """Predict by the fitted lines."""
-        *pigments, shading = _coordinates(pictures)
+        *pigments, shading = _compute_coordinates(pictures)
         melanin, hemoglobin = (
             (slope * value + offset).clamp_min(0)
             for value, (slope, offset) in zip(pigments, self.lines.values(), strict=True)
@@ -102,8 +102,8 @@ class Tsumura:
         return Pixels(melanin, hemoglobin, diffuse, None, albedo, diffuse[:, None] * albedo, None)
 
 
-def _coordinates(pictures: Pictures) -> Tensor:
-    """Coordinates [3, pixels] of melanin, hemoglobin and shadow."""
+def _compute_coordinates(pictures: Pictures) -> Tensor:
+    """Compute coordinates [3, pixels] of melanin, hemoglobin and shadow."""
     colour = pictures.truth.colour
     assert colour is not None
     basis = torch.tensor(DIRECTIONS, dtype=torch.float64)

@@ -18,7 +18,7 @@ class BioFaceNetShape(nn.Module):
     def __init__(self) -> None:
         super().__init__()
         inputs = (3, *FILTERS[:-1])
-        self.down = nn.ModuleList(_level(a, b) for a, b in zip(inputs, FILTERS, strict=True))
+        self.down = nn.ModuleList(_make_level(a, b) for a, b in zip(inputs, FILTERS, strict=True))
         self.decoders = nn.ModuleList(_Decoder() for _ in range(4))
         self.globals = nn.Linear(FILTERS[-1], 15)
 
@@ -35,7 +35,7 @@ class _Decoder(nn.Module):
     def __init__(self) -> None:
         super().__init__()
         pairs = zip(FILTERS[:0:-1], FILTERS[-2::-1], strict=True)
-        self.up = nn.ModuleList(_level(coarse + fine, fine) for coarse, fine in pairs)
+        self.up = nn.ModuleList(_make_level(coarse + fine, fine) for coarse, fine in pairs)
         self.last = nn.Conv2d(FILTERS[0], 1, 3, padding=1)
 
     def forward(self, features: list[Tensor]) -> Tensor:
@@ -46,7 +46,7 @@ class _Decoder(nn.Module):
         return last
 
 
-def _level(inputs: int, outputs: int) -> nn.Sequential:
+def _make_level(inputs: int, outputs: int) -> nn.Sequential:
     layers: list[nn.Module] = []
     for count in (inputs, outputs, outputs):
         layers += [nn.Conv2d(count, outputs, 3, padding=1), nn.BatchNorm2d(outputs), nn.ReLU()]

@@ -18,6 +18,7 @@ import torch.nn.functional as F
 from torch import Tensor
 
 from benchmarks.report import Results, main
+from benchmarks.resources import read_resident_kb
 from skinnet.physics import LIGHTS, Capture, SkinDecoder
 
 Picture = Callable[[Tensor, Tensor, Capture], Tensor]
@@ -28,8 +29,8 @@ GRID = 256
 """Nodes along each side of the usual table, evenly spaced."""
 
 
-def draw_scene(images: int, size: int, seed: int = 0) -> tuple[Tensor, Tensor, Capture]:
-    """Draw smooth maps in the range of skin, mixed lights and cameras."""
+def sample_scene(images: int, size: int, seed: int = 0) -> tuple[Tensor, Tensor, Capture]:
+    """Sample smooth maps in the range of skin, mixed lights and cameras."""
     torch.manual_seed(seed)
     coarse = torch.rand(2, images, 9, 9)
     smooth = F.interpolate(coarse, (size, size), mode="bicubic", align_corners=True).clamp(0, 1)
@@ -86,27 +87,27 @@ def step(
 
 def time_ways(ways: dict[str, Picture], images: int, size: int, rounds: int) -> dict[str, float]:
     """Measure the least time of each way in seconds; the ways take turns."""
-    views, weight = draw_scene(images, size), torch.randn(images, 3, size, size)
+    scene, weight = sample_scene(images, size), torch.randn(images, 3, size, size)
     times: dict[str, list[float]] = {name: [] for name in ways}
     for name in [*ways] * rounds:
         # Short steps are repeated more often, because one interruption spoils them.
         for _ in range(REPEATS[name]):
             start = time.perf_counter()
-            step(ways[name], views, weight)
+            step(ways[name], scene, weight)
             times[name].append(time.perf_counter() - start)
     return {name: min(values) for name, values in times.items()}
 
 
 def measure_errors(size: int) -> Results:
     """Measure the largest error in linear RGB, and the largest relative error of a gradient."""
-    _, _, capture = draw_scene(IMAGES, 9, seed=1)
+    _, _, capture = sample_scene(IMAGES, 9, seed=1)
     square = torch.rand(2, IMAGES, size, size)
-    views = square[0], square[1], capture
+    scene = square[0], square[1], capture
     weight = torch.randn(IMAGES, 3, size, size)
     fast, bands = (partial(decode, SkinDecoder(fast=fast)) for fast in (True, False))
     with torch.no_grad():
-        error = (fast(*views) - bands(*views)).abs().max().item()
-    pairs = zip(step(fast, views, weight), step(bands, views, weight), strict=True)
+        error = (fast(*scene) - bands(*scene)).abs().max().item()
+    pairs = zip(step(fast, scene, weight), step(bands, scene, weight), strict=True)
     relative = [((ours - exact).norm() / exact.norm()).item() for ours, exact in pairs]
     return {"max_error": error, "gradient_error": max(relative)}
 
@@ -114,13 +115,13 @@ def measure_errors(size: int) -> Results:
 def measure_peak_growth(fast: bool, images: int, size: int) -> int:
     """Measure the growth in kB of this process' resident peak by one step, after a warm-up."""
     picture = partial(decode, SkinDecoder(fast=fast))
-    step(picture, draw_scene(images, 8), torch.ones(images, 3, 8, 8))
-    views, weight = draw_scene(images, size), torch.ones(images, 3, size, size)
+    step(picture, sample_scene(images, 8), torch.ones(images, 3, 8, 8))
+    scene, weight = sample_scene(images, size), torch.ones(images, 3, size, size)
     # The peak so far is that of the imports; writing 5 resets it.
     Path("/proc/self/clear_refs").write_text("5")
-    before = _read_resident("VmRSS")
-    step(picture, views, weight)
-    return _read_resident("VmHWM") - before
+    before = read_resident_kb("VmRSS")
+    step(picture, scene, weight)
+    return read_resident_kb("VmHWM") - before
 
 
 def measure_memory(fast: bool, images: int = IMAGES, size: int = SIZE) -> int:
@@ -134,11 +135,6 @@ def measure_memory(fast: bool, images: int = IMAGES, size: int = SIZE) -> int:
         [sys.executable, "-c", code], cwd=root, capture_output=True, text=True, check=True
     )
     return int(done.stdout)
-
-
-def _read_resident(name: str) -> int:
-    lines = Path("/proc/self/status").read_text().splitlines()
-    return next(int(line.split()[1]) for line in lines if line.startswith(name))
 
 
 def measure(images: int = IMAGES, size: int = SIZE, rounds: int = ROUNDS) -> Results:

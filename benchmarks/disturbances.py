@@ -29,10 +29,10 @@ def compute_gain(temperature: float) -> NDArray[np.float64]:
 
     The adaptation is von Kries' in linear sRGB, at the same luminance.
     """
-    return (_white(temperature) / _white(NEUTRAL)).numpy()
+    return (_compute_white(temperature) / _compute_white(NEUTRAL)).numpy()
 
 
-def _white(temperature: float) -> torch.Tensor:
+def _compute_white(temperature: float) -> torch.Tensor:
     xyz = load_light(f"D{temperature:g}K") @ load_observer()
     return torch.linalg.solve(srgb_to_xyz(), xyz / xyz[1])
 

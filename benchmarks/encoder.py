@@ -36,7 +36,7 @@ from benchmarks.portraits import measure_portraits
 from benchmarks.reader import Encoder, NetworkReader
 from benchmarks.report import Results, main
 from benchmarks.scores import Scores
-from benchmarks.targets import ASKED, lay_out, list_not_beaten
+from benchmarks.targets import ASKED, format_table, list_not_beaten
 from skinnet._version import __version__
 from skinnet.errors import InputError
 from skinnet.network import SkinAutoencoder
@@ -187,4 +187,4 @@ def _log(text: str) -> None:
 
 
 if __name__ == "__main__":
-    main(measure, __doc__ or "", lay_out)
+    main(measure, __doc__ or "", format_table)

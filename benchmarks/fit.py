@@ -12,7 +12,7 @@ import resource
 import subprocess
 import sys
 import time
-from collections.abc import Callable, Mapping
+from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import cache
 from pathlib import Path
@@ -24,6 +24,7 @@ from scipy.ndimage import zoom
 from scipy.spatial.transform import Rotation
 
 from benchmarks.report import Results, main
+from benchmarks.resources import time_least
 from skinnet.mesh import Mesh
 from skinnet.shape._moments import compute_moments
 from skinnet.shape._scan_points import ScanPoints
@@ -249,16 +250,6 @@ def solve_equation_6(
     y = (points - scale * model.mean.astype(np.float64) @ rotation.T).ravel()
     solution, squared, *_ = np.linalg.lstsq(a, y, rcond=None)
     return solution[:modes], float(squared[0])
-
-
-def time_least(action: Callable[[], object], repeats: int) -> float:
-    """Measure the least time of an action, in seconds."""
-    times = []
-    for _ in range(repeats):
-        start = time.perf_counter()
-        action()
-        times.append(time.perf_counter() - start)
-    return min(times)
 
 
 def measure_whole_fit(

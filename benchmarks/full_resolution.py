@@ -4,7 +4,7 @@
 
 The photographs are scikit-image's astronaut, enlarged, with grain: `portrait` is all of it, and
 `close_up` a crop that the head fills, of which all pixels are decomposed. Each figure comes from
-its own process: the shorter of two runs with open model files, and the highest resident memory.
+its own process: the shorter of two runs with loaded models, and the highest resident memory.
 `cpu_seconds` are the sum over threads, which other programs disturb less than seconds. `from_jpeg`
 includes the decoding of the file.
 """
@@ -34,13 +34,13 @@ PICTURES = {
 
 
 def measure() -> dict[str, Any]:
-    """Seconds and MiB of each picture at full resolution, of the network alone, and their ratio."""
+    """Measure each picture at full resolution and with the network alone, and their ratio."""
     with tempfile.TemporaryDirectory() as folder:
         return {name: _measure_picture(Path(folder), name) for name in PICTURES}
 
 
 def enlarge_astronaut(name: str, seed: int = 0) -> NDArray[np.uint8]:
-    """A picture of `PICTURES`, uint8 sRGB [H, W, 3], with noise of 2 levels' standard deviation."""
+    """Enlarge to a picture of `PICTURES`, uint8 sRGB [H, W, 3], with noise of 2 levels (SD)."""
     rows, columns, size = PICTURES[name]
     image = Image.fromarray(astronaut()[rows, columns])
     smooth = np.asarray(image.resize(size, Image.Resampling.BICUBIC), np.float32)

@@ -1,15 +1,15 @@
-"""What colours tell of the pigments of a face, under the unknowns of the synthetic renderer.
+"""How well colours determine the pigments of a face, for the unknowns of the synthetic renderer.
 
     python -m benchmarks.identifiability [--json]
 
 Patches of skin have the pigments, lights, cameras, white balances and tone curves of the synthetic
 faces, a shading of unknown strength, specular reflection, and eight bits. A network of two layers
 is trained on 60,000 such faces to predict the mean pigments, and scored on 10,000 others under the
-cameras of the test split. This is about the best that a reader of colours alone can reach. `patch`
-sees the base of a skin. `face` sees its forehead, cheeks, nose, lids, lips and chin, each in a
-shading of its own. The rows `told` are also given the exact error of the white balance, which the
-rest of a picture can only estimate. The unknowns are removed step by step. RMSE is relative to that
-of the mean.
+cameras of the test split. This is about the best that can be reached from colours alone. `patch` is
+given the base of a skin. `face` is given its forehead, cheeks, nose, lids, lips and chin, each in a
+shading of its own. The rows `patch_told` and `face_told` are also given the exact error of the
+white balance, which can only be estimated from the rest of a picture. The unknowns are removed step
+by step. RMSE is relative to that of the mean.
 """
 
 from collections.abc import Callable
@@ -58,13 +58,13 @@ def measure() -> Results:
         "and_mean_camera": (lambda faces: _use_daylight(_remove_tone_curve(faces)), False),
     }
     return {
-        name: score_readers(change(faces), decoder, measured)
+        name: score_networks(change(faces), decoder, measured)
         for name, (change, measured) in cases.items()
     }
 
 
-def score_readers(faces: Faces, decoder: SkinDecoder, measured: bool) -> Results:
-    """Score readers of a patch and of a face, with and without the white balance."""
+def score_networks(faces: Faces, decoder: SkinDecoder, measured: bool) -> Results:
+    """Score networks that are given a patch or a face, with and without the white balance."""
     found: Results = {}
     for name, some in {"patch": slice(0, 1), "face": slice(1, None)}.items():
         part = faces._replace(
@@ -73,11 +73,11 @@ def score_readers(faces: Faces, decoder: SkinDecoder, measured: bool) -> Results
             shading=faces.shading[:, some],
         )
         truth = torch.stack([part.f_mel.mean(1), part.f_blood.mean(1)], 1)
-        seen = render_colours(part, decoder, measured)
-        with_balance = torch.cat([seen, faces.camera.white_balance], 1)
+        colours = render_colours(part, decoder, measured)
+        with_balance = torch.cat([colours, faces.camera.white_balance], 1)
         found |= {
-            name: score_reader(truth, seen),
-            f"{name}_told": score_reader(truth, with_balance),
+            name: score_network(truth, colours),
+            f"{name}_told": score_network(truth, with_balance),
         }
     return found
 
@@ -115,9 +115,9 @@ def _use_daylight(faces: Faces) -> Faces:
 def render_colours(faces: Faces, decoder: SkinDecoder, measured: bool) -> Tensor:
     """Render log sRGB [count, 3 patches] in eight bits, by measured cameras or the mean."""
     matrix = (
-        get_measured_matrix(faces, decoder.camera)
+        compute_measured_matrix(faces, decoder.camera)
         if measured
-        else get_mean_matrix(faces, decoder.camera)
+        else compute_mean_matrix(faces, decoder.camera)
     )
     skin = decoder.albedo(faces.f_mel[:, None], faces.f_blood[:, None], matrix)[:, :, 0]
     linear = (skin + faces.specular[:, None, None]) * faces.shading[:, None]
@@ -126,7 +126,7 @@ def render_colours(faces: Faces, decoder: SkinDecoder, measured: bool) -> Tensor
     return torch.log(display.clamp_min(0.5 / 255)).flatten(1)
 
 
-def get_measured_matrix(faces: Faces, camera: SpectralCamera) -> Tensor:
+def compute_measured_matrix(faces: Faces, camera: SpectralCamera) -> Tensor:
     """Compute spectrum-to-sRGB matrices [count, 33, 3]; those scored are of test cameras."""
     matrices = []
     for split, part in {"train": slice(None, -SCORED), "test": slice(-SCORED, None)}.items():
@@ -138,7 +138,7 @@ def get_measured_matrix(faces: Faces, camera: SpectralCamera) -> Tensor:
     return torch.cat(matrices)
 
 
-def get_mean_matrix(faces: Faces, camera: SpectralCamera) -> Tensor:
+def compute_mean_matrix(faces: Faces, camera: SpectralCamera) -> Tensor:
     """Compute spectrum-to-sRGB matrices [count, 33, 3] of the mean camera."""
     light = faces.light
     mean = torch.zeros(len(light.mixture), len(camera.basis))
@@ -146,9 +146,9 @@ def get_mean_matrix(faces: Faces, camera: SpectralCamera) -> Tensor:
     return camera.matrix(Capture(light.mixture, light.temperature, mean, balance))
 
 
-def score_reader(truth: Tensor, seen: Tensor) -> dict[str, float]:
+def score_network(truth: Tensor, colours: Tensor) -> dict[str, float]:
     """Score a network that predicts both pigments [count, 2] from colours."""
-    guess = fit_network(_standardise(seen), _standardise(truth.log())) * truth.log().std(0)
+    guess = fit_network(_standardise(colours), _standardise(truth.log())) * truth.log().std(0)
     guess = (guess + truth.log().mean(0)).exp()[-SCORED:]
     truth = truth[-SCORED:]
     found = {}
@@ -160,21 +160,27 @@ def score_reader(truth: Tensor, seen: Tensor) -> dict[str, float]:
     return found
 
 
-def fit_network(seen: Tensor, target: Tensor) -> Tensor:
+def fit_network(colours: Tensor, target: Tensor) -> Tensor:
     """Train a network on all but the scored samples, and return its predictions for all."""
     network = nn.Sequential(
-        *(nn.Linear(seen.shape[1], 64), nn.SiLU(), nn.Linear(64, 64), nn.SiLU(), nn.Linear(64, 2))
+        *(
+            nn.Linear(colours.shape[1], 64),
+            nn.SiLU(),
+            nn.Linear(64, 64),
+            nn.SiLU(),
+            nn.Linear(64, 2),
+        )
     )
     optimizer = torch.optim.Adam(network.parameters(), 1e-2)
     schedule = torch.optim.lr_scheduler.CosineAnnealingLR(optimizer, STEPS)
     for _ in range(STEPS):
-        some = torch.randint(len(seen) - SCORED, (BATCH,))
+        some = torch.randint(len(colours) - SCORED, (BATCH,))
         optimizer.zero_grad()
-        ((network(seen[some]) - target[some]) ** 2).mean().backward()
+        ((network(colours[some]) - target[some]) ** 2).mean().backward()
         optimizer.step()
         schedule.step()
     with torch.no_grad():
-        predictions: Tensor = network(seen)
+        predictions: Tensor = network(colours)
     return predictions
 
 

@@ -29,7 +29,7 @@ THREADS = (1, 2)
 
 
 def measure() -> dict[str, Any]:
-    """Times of both networks by size and threads, their ratios, and seconds of the commands."""
+    """Measure both networks by size and threads, their ratios, and the commands."""
     with tempfile.TemporaryDirectory() as folder:
         rival = Path(folder) / "biofacenet.onnx"
         export_rival(rival)
@@ -70,7 +70,7 @@ def export_rival(path: Path) -> None:
 
 
 def time_run_ms(path: Path, size: int, threads: int) -> float:
-    """The shortest time of one run on a photograph of noise, in milliseconds."""
+    """Measure the shortest time of one run on a photograph of noise, in milliseconds."""
     options = onnxruntime.SessionOptions()
     options.intra_op_num_threads = threads
     session = onnxruntime.InferenceSession(path, options, providers=["CPUExecutionProvider"])
@@ -83,7 +83,7 @@ def time_run_ms(path: Path, size: int, threads: int) -> float:
 
 
 def time_commands() -> dict[str, float]:
-    """Seconds of `skinnet --help` and of `skinnet predict` on one 512 x 512 photograph."""
+    """Measure seconds of `skinnet --help` and of `skinnet predict` on one 512 x 512 photograph."""
     with tempfile.TemporaryDirectory() as folder:
         photograph = Path(folder) / "astronaut.png"
         Image.fromarray(astronaut()).save(photograph)

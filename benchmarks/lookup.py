@@ -8,9 +8,6 @@ one process, and the least time of each is reported. `skin` is the same for skin
 the table's surface except for noise. That is the best case for a tree.
 """
 
-import time
-from collections.abc import Callable
-
 import numpy as np
 import torch
 import torch.nn.functional as F
@@ -19,6 +16,7 @@ from scipy.spatial import cKDTree
 from torch import Tensor
 
 from benchmarks.report import Results, main
+from benchmarks.resources import time_least
 from skinnet.physics import (
     F_BLOOD_RANGE,
     F_MEL_RANGE,
@@ -75,16 +73,6 @@ def render_face(lookup: SkinLookup, matrix: Tensor, size: int) -> tuple[Tensor, 
     return noisy[0].float(), noisy[1].float()
 
 
-def time_least(function: Callable[[], object], repeats: int) -> float:
-    """Measure the least time of several calls, in seconds."""
-    times = []
-    for _ in range(repeats):
-        start = time.perf_counter()
-        function()
-        times.append(time.perf_counter() - start)
-    return min(times)
-
-
 def compare_with_tree(
     table: Float[np.ndarray, "mel blood 3"], colours: Float[np.ndarray, "n 3"], rounds: int
 ) -> Results:
@@ -103,7 +91,7 @@ def compare_with_tree(
         "speedup_vs_kdtree": seconds["tree"] / seconds["query"],
         "speedup_with_building": (seconds["tree"] + seconds["tree_build"])
         / (seconds["query"] + seconds["build"]),
-        "same_as_brute_force": agree(nodes, colours, found, tree),
+        "same_as_brute_force": check_nearest(nodes, colours, found, tree),
         "query_seconds": seconds["query"],
         "build_seconds": seconds["build"],
         "kdtree_seconds": seconds["tree"],
@@ -111,7 +99,7 @@ def compare_with_tree(
     }
 
 
-def agree(
+def check_nearest(
     nodes: Float[np.ndarray, "nodes 3"],
     colours: Float[np.ndarray, "n 3"],
     found: Int[np.ndarray, "n"],

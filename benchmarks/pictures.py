@@ -8,7 +8,7 @@ from kornia.color import rgb_to_linear_rgb
 from numpy.typing import NDArray
 from torch import Tensor
 
-from benchmarks.typology import typology_angle
+from benchmarks.typology import compute_typology_angle
 from skinnet.physics import SkinDecoder
 from train.batch import Batch
 
@@ -73,7 +73,7 @@ def collect_pictures(batch: Batch, decoder: SkinDecoder) -> Pictures:
     picture = skin.nonzero()[:, 0]
     eight_bits = (255 * batch.photograph).round().to(torch.uint8).movedim(1, -1).contiguous()
     colour = render_under_daylight(truth.melanin, truth.hemoglobin, decoder)
-    angle = typology_angle(average_by_picture(colour, picture, len(skin)))
+    angle = compute_typology_angle(average_by_picture(colour, picture, len(skin)))
     return Pictures(eight_bits.numpy(), truth, picture, angle)
 
 

@@ -20,7 +20,7 @@ from benchmarks.pictures import render_under_daylight
 from benchmarks.reader import Reader, compose, resize_maps
 from benchmarks.report import Results
 from benchmarks.running_statistics import RunningStatistics
-from benchmarks.typology import GROUPS, group, typology_angle
+from benchmarks.typology import GROUPS, compute_typology_angle, find_group
 from skinnet.images import find_face, frame_head, read_photo, resize, segment_skin, srgb_to_linear
 from skinnet.network.autoencoder import SkinMaps
 from skinnet.physics import SkinDecoder
@@ -29,7 +29,7 @@ LARGEST = 256
 """Longest side of the crops in pixels; smaller crops keep their size."""
 
 EVERY = 20
-"""One in so many of the Congress portraits is disturbed, and all of the London ones."""
+"""Every 20th portrait of Congress is disturbed, and every portrait of London."""
 
 FEWEST = 50
 """Pixels of skin that a portrait needs to count."""
@@ -97,10 +97,11 @@ def measure_wall(photo: NDArray[np.uint8]) -> NDArray[np.float32]:
 def measure_portraits(
     folder: Path, reader: Reader, decoder: SkinDecoder, every: int = 1
 ) -> Results:
-    """Measure every figure; `every` takes only one picture in so many.
+    """Measure every figure; with `every` = n, only every nth picture is used.
 
     `congress_held_out` are the portraits that stage 2 did not see, if it was trained on the
-    Congress portraits by the defaults of `train.portraits`. Only with all pictures are they known.
+    Congress portraits by the defaults of `train.portraits`. They are known only if all pictures are
+    used.
     """
     errors: dict[str, list[RunningStatistics]] = {}
     explained: list[RunningStatistics] = []
@@ -204,8 +205,8 @@ def group_by_tone(measured: list[tuple[Portrait, list[float]]], decoder: SkinDec
         return {}
     angles = compute_wall_angles([one for one, _ in usable])
     pigments = torch.tensor([pigments for _, pigments in usable], dtype=torch.float32)
-    read = typology_angle(render_under_daylight(*pigments.unbind(1), decoder))
-    tones = [group(angle) for angle in angles.tolist()]
+    read = compute_typology_angle(render_under_daylight(*pigments.unbind(1), decoder))
+    tones = [find_group(angle) for angle in angles.tolist()]
     found: Results = {}
     for name in sorted(set(tones), key=list(GROUPS).index):
         mine = torch.tensor([tone == name for tone in tones])
@@ -225,4 +226,4 @@ def compute_wall_angles(some: Sequence[Portrait]) -> torch.Tensor:
     """
     walls, colours = (np.stack([getattr(one, name) for one in some]) for name in ("wall", "colour"))
     grey = np.median(walls @ [0.2126, 0.7152, 0.0722])
-    return typology_angle(torch.from_numpy(colours / walls * grey))
+    return compute_typology_angle(torch.from_numpy(colours / walls * grey))

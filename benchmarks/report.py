@@ -1,4 +1,4 @@
-"""What a benchmark found, as a short table or as one JSON object."""
+"""Prints the figures of a benchmark, as a short table or as one JSON object."""
 
 import argparse
 import json
@@ -34,19 +34,19 @@ def main(
     except InputError as error:
         print(f"\n{error}", file=sys.stderr)
         sys.exit(2)
-    print(json.dumps(results) if as_json else (layout or table)(results))
+    print(json.dumps(results) if as_json else (layout or format_table)(results))
 
 
-def table(results: Mapping[str, Any]) -> str:
-    """Gives one line a number, its path on the left."""
-    lines = list(_lines(results))
+def format_table(results: Mapping[str, Any]) -> str:
+    """Format each number as a line, with its path on the left."""
+    lines = list(_format_lines(results))
     width = max(len(name) for name, _ in lines)
     return "\n".join(f"{name:{width}}  {value}" for name, value in lines)
 
 
-def _lines(results: Mapping[str, Any], prefix: str = "") -> Iterator[tuple[str, str]]:
+def _format_lines(results: Mapping[str, Any], prefix: str = "") -> Iterator[tuple[str, str]]:
     for name, value in results.items():
         if isinstance(value, Mapping):
-            yield from _lines(value, f"{prefix}{name}.")
+            yield from _format_lines(value, f"{prefix}{name}.")
         else:
             yield prefix + name, f"{value:.4g}" if isinstance(value, float) else str(value)

@@ -1,4 +1,4 @@
-"""The columns of the table: errors and correlations of a row."""
+"""Errors and correlations of a row, the columns of the table."""
 
 from typing import Any
 
@@ -7,7 +7,7 @@ from torch import Tensor
 
 from benchmarks.pictures import Pictures, Pixels, average_by_picture
 from benchmarks.running_statistics import RunningStatistics
-from benchmarks.typology import GROUPS, group
+from benchmarks.typology import GROUPS, find_group
 from skinnet.network.autoencoder import F_MEL_MAX
 
 PIGMENTS = {"melanin": F_MEL_MAX, "hemoglobin": 0.07}
@@ -45,8 +45,8 @@ class Scores:
             by_picture = [
                 average_by_picture(one, pictures.picture, len(pictures.angle)) for one in both
             ]
-            seen = by_picture[1].isfinite()
-            self.image[name].add(*(one[seen] for one in by_picture))
+            with_skin = by_picture[1].isfinite()
+            self.image[name].add(*(one[with_skin] for one in by_picture))
         for name, field in COLUMNS.items():
             if getattr(guess, field) is not None:
                 self.columns[name].add(getattr(guess, field), getattr(truth, field))
@@ -61,8 +61,10 @@ class Scores:
         for number, angle in enumerate(pictures.angle.tolist()):
             here = pictures.picture == number
             if here.any():
-                self.pictures[group(angle)] += 1
-                self.groups[group(angle)].add(guess.melanin[here], pictures.truth.melanin[here])
+                self.pictures[find_group(angle)] += 1
+                self.groups[find_group(angle)].add(
+                    guess.melanin[here], pictures.truth.melanin[here]
+                )
 
     def _add_mask(self, guess: Tensor | None, skin: Tensor) -> None:
         if guess is None or self.iou_sums is None:
@@ -74,18 +76,18 @@ class Scores:
         """Compute every column; `constant` has the scores of the constant predictor."""
         relative = [one["relative_rmse"] for one in self.group_by_tone().values()]
         return {
-            **{name: self._pigment(name, constant) for name in PIGMENTS},
+            **{name: self._compute_pigment(name, constant) for name in PIGMENTS},
             **{name: moments.rmse for name, moments in self.columns.items()},
-            "mask_iou": None if self.iou_sums is None else _ratio(*self.iou_sums.tolist()),
+            "mask_iou": None if self.iou_sums is None else _divide(*self.iou_sums.tolist()),
             "leak": self.error_and_shading.r,
-            "group_ratio": _ratio(max(relative), min(relative)) if relative else None,
+            "group_ratio": _divide(max(relative), min(relative)) if relative else None,
         }
 
-    def _pigment(self, name: str, constant: "Scores") -> dict[str, float | None]:
+    def _compute_pigment(self, name: str, constant: "Scores") -> dict[str, float | None]:
         rmse, other = self.pixel[name].rmse, constant.pixel[name].rmse
         return {
             "rmse": rmse,
-            "rmse_ratio": None if rmse is None or other is None else _ratio(rmse, other),
+            "rmse_ratio": None if rmse is None or other is None else _divide(rmse, other),
             "r_pixel": self.pixel[name].r,
             "r_image": self.image[name].r,
             "grid_rmse": self.grid[name].rmse,
@@ -105,5 +107,5 @@ class Scores:
         return found
 
 
-def _ratio(over: float, under: float) -> float | None:
+def _divide(over: float, under: float) -> float | None:
     return over / under if under else None

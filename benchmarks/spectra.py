@@ -25,7 +25,7 @@ from skinnet.physics import (
 
 Model = Callable[[Tensor, Tensor], Tensor]
 
-WIDE = ((0.0, 0.6), (0.0, 0.3))
+BOUNDS = ((0.0, 0.6), (0.0, 0.3))
 """Bounds of f_mel and f_blood, wider than any skin."""
 
 PAPER_RANGE = ((0.01, 0.43), (0.02, 0.07))
@@ -48,7 +48,7 @@ def load_forearms() -> Float[Tensor, "people wavelength"]:
 def fit(
     model: Model,
     target: Float[Tensor, "people value"],
-    bounds: tuple[tuple[float, float], ...] = WIDE,
+    bounds: tuple[tuple[float, float], ...] = BOUNDS,
 ) -> Float[Tensor, "people parameter"]:
     """Fit the parameters of a model to each target, within bounds.
 
@@ -56,11 +56,11 @@ def fit(
     grid. A parameter that leaves its bounds is clipped, and is held in the step that follows.
     """
     low, high = torch.tensor(bounds, dtype=torch.float64).T
-    f = _start(model, target, low, high)
+    f = _choose_start(model, target, low, high)
     damping = torch.full((len(target),), 1e-3, dtype=torch.float64)
     error = (model(*f.T) - target).square().sum(-1)
     for _ in range(30):
-        trial = (f + _step(model, f, target, damping, low, high)).clamp(low, high)
+        trial = (f + _compute_step(model, f, target, damping, low, high)).clamp(low, high)
         tried = (model(*trial.T) - target).square().sum(-1)
         better = tried < error
         if (trial - f).abs().max() < 1e-8:
@@ -70,7 +70,7 @@ def fit(
     return f
 
 
-def _start(model: Model, target: Tensor, low: Tensor, high: Tensor) -> Tensor:
+def _choose_start(model: Model, target: Tensor, low: Tensor, high: Tensor) -> Tensor:
     # Spaced as u^2: the colour changes fastest where a fraction is small.
     axes = [
         a + (b - a) * torch.linspace(0, 1, 40).double() ** 2 for a, b in zip(low, high, strict=True)
@@ -79,7 +79,7 @@ def _start(model: Model, target: Tensor, low: Tensor, high: Tensor) -> Tensor:
     return nodes[torch.cdist(target, model(*nodes.T)).argmin(1)]
 
 
-def _step(
+def _compute_step(
     model: Model, f: Tensor, target: Tensor, damping: Tensor, low: Tensor, high: Tensor
 ) -> Tensor:
     unit = torch.eye(len(low), dtype=torch.float64)
@@ -95,22 +95,24 @@ def _step(
     return torch.linalg.solve(normal + torch.diag_embed(ridge), gradient * ~held)
 
 
-def rmse(recovered: Tensor, target: Tensor) -> Float[Tensor, "people"]:
+def compute_rmse(recovered: Tensor, target: Tensor) -> Float[Tensor, "people"]:
     """Compute the root mean square error of each spectrum."""
     return (recovered - target).square().mean(-1).sqrt()
 
 
-def fit_rmse(
-    optics: SkinOptics | str, target: Tensor, bounds: tuple[tuple[float, float], ...] = WIDE
+def compute_fit_rmse(
+    optics: SkinOptics | str, target: Tensor, bounds: tuple[tuple[float, float], ...] = BOUNDS
 ) -> Float[Tensor, "people"]:
     """Compute the error of each spectrum's best fit."""
     model = SkinReflectance(optics, dtype=torch.float64).bands
-    return rmse(model(*fit(model, target, bounds).T), target)
+    return compute_rmse(model(*fit(model, target, bounds).T), target)
 
 
 def score_split_half(target: Tensor, radii: tuple[float, ...], splits: int = SPLITS) -> Results:
     """Choose the radius on one half of the people and score it on the other half."""
-    errors = torch.stack([fit_rmse(SkinOptics.preset("paper", r_vessel=r), target) for r in radii])
+    errors = torch.stack(
+        [compute_fit_rmse(SkinOptics.preset("paper", r_vessel=r), target) for r in radii]
+    )
     rng = torch.Generator().manual_seed(SEED)
     chosen, held_out = [], []
     for _ in range(splits):
@@ -151,7 +153,7 @@ def recover_from_rgb(
         return torch.cat([colour, stiffness * scale[:, None]], -1)
 
     target = torch.cat([rgb, torch.full_like(rgb[:, :1], stiffness)], -1)
-    f_mel, f_blood, scale = fit(colours, target, (*WIDE, SCALES)).T
+    f_mel, f_blood, scale = fit(colours, target, (*BOUNDS, SCALES)).T
     return scale[:, None] * bands(f_mel, f_blood)
 
 
@@ -165,7 +167,7 @@ def score_principal_components(target: Tensor, count: int) -> Float[Tensor, "peo
     """Compute the in-sample error of `count` principal components, the least that is possible."""
     mean = target.mean(0)
     _, _, V = torch.linalg.svd(target - mean, full_matrices=False)
-    return rmse(mean + (target - mean) @ V[:count].T @ V[:count], target)
+    return compute_rmse(mean + (target - mean) @ V[:count].T @ V[:count], target)
 
 
 def measure(radii: tuple[float, ...] = RADII) -> Results:
@@ -182,13 +184,14 @@ def measure(radii: tuple[float, ...] = RADII) -> Results:
 def _measure(target: Tensor, radii: tuple[float, ...]) -> Results:
     results: Results = {}
     for preset in PRESETS:
-        results[preset] = _spread(fit_rmse(preset, target))
-        inside = _spread(fit_rmse(preset, target, PAPER_RANGE))["median"]
+        results[preset] = _compute_quantiles(compute_fit_rmse(preset, target))
+        inside = _compute_quantiles(compute_fit_rmse(preset, target, PAPER_RANGE))["median"]
         results[preset]["paper_range_median"] = inside
     results["split_half"] = score_split_half(target, radii=radii)
     results |= score_colour_alone(target)
     results["pca"] = {
-        str(n): _spread(score_principal_components(target, n))["median"] for n in (1, 2, 3)
+        str(n): _compute_quantiles(score_principal_components(target, n))["median"]
+        for n in (1, 2, 3)
     }
     return results
 
@@ -203,13 +206,13 @@ def score_colour_alone(target: Tensor) -> Results:
     rgb = target @ load_d65_matrix()
     free, stiff = recover_from_rgb(rgb), recover_from_rgb(rgb, STIFFNESS)
     return {
-        "rgb": _spread(rmse(free, target)),
-        "rgb_up_to_scale": _spread(rmse(rescale(free, target), target)),
-        "rgb_scale_near_one": _spread(rmse(stiff, target)),
+        "rgb": _compute_quantiles(compute_rmse(free, target)),
+        "rgb_up_to_scale": _compute_quantiles(compute_rmse(rescale(free, target), target)),
+        "rgb_scale_near_one": _compute_quantiles(compute_rmse(stiff, target)),
     }
 
 
-def _spread(errors: Tensor) -> Results:
+def _compute_quantiles(errors: Tensor) -> Results:
     return {"median": errors.quantile(0.5).item(), "p95": errors.quantile(0.95).item()}
 
 

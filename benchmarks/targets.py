@@ -61,44 +61,46 @@ def _rank(column: str, value: float) -> float:
     return value if column.endswith(HIGHER) else -abs(value)
 
 
-def lay_out(results: Mapping[str, Any]) -> str:
+def format_table(results: Mapping[str, Any]) -> str:
     """Write the rows as columns of text with their targets, then all else line by line."""
     table = {row: dict(flatten(results[row] or {})) for row in ROWS}
     asked = dict(flatten(results["asked"]))
     names = list(dict.fromkeys(name for row in table.values() for name in row))
-    lines = [_line("", [*ROWS, "asked"])]
+    lines = [_format_line("", [*ROWS, "asked"])]
     for name in names:
-        cells = [_cell(table[row].get(name)) for row in ROWS]
-        lines.append(_line(name, [*cells, asked.get(name, "")]))
-    lines += ["", *_groups(results["groups"]), ""]
+        cells = [_format_cell(table[row].get(name)) for row in ROWS]
+        lines.append(_format_line(name, [*cells, asked.get(name, "")]))
+    lines += ["", *_format_groups(results["groups"]), ""]
     rest = {name: results[name] for name in ("portraits", "explained", "not_beaten", "settings")}
     for name, value in flatten(rest):
-        wanted = asked.get(name, asked.get(_without_disturbance(name), ""))
-        lines.append(f"{name:44}{_cell(value):>9}  {wanted}".rstrip())
+        wanted = asked.get(name, asked.get(_drop_disturbance(name), ""))
+        lines.append(f"{name:44}{_format_cell(value):>9}  {wanted}".rstrip())
     return "\n".join(lines)
 
 
-def _groups(groups: Mapping[str, Any]) -> list[str]:
-    """Lines of the RMSE of melanin relative to its mean, by skin tone."""
+def _format_groups(groups: Mapping[str, Any]) -> list[str]:
+    """Format lines of the RMSE of melanin relative to its mean, by skin tone."""
     tones = next(iter(groups.values()))
-    lines = [_line("melanin, relative rmse", ["pictures", "mean", *groups])]
+    lines = [_format_line("melanin, relative rmse", ["pictures", "mean", *groups])]
     for tone, one in tones.items():
-        cells = [_cell(row[tone]["relative_rmse"]) for row in groups.values()]
-        lines.append(_line(tone, [_cell(one["pictures"]), _cell(one["mean"]), *cells]))
+        cells = [_format_cell(row[tone]["relative_rmse"]) for row in groups.values()]
+        lines.append(
+            _format_line(tone, [_format_cell(one["pictures"]), _format_cell(one["mean"]), *cells])
+        )
     return lines
 
 
-def _without_disturbance(name: str) -> str:
-    """portraits.stability.mirror.melanin to portraits.stability.melanin."""
+def _drop_disturbance(name: str) -> str:
+    """Turn portraits.stability.mirror.melanin into portraits.stability.melanin."""
     parts = name.split(".")
     return ".".join(parts[:2] + parts[3:]) if len(parts) > 3 else name
 
 
-def _line(name: str, cells: list[str]) -> str:
+def _format_line(name: str, cells: list[str]) -> str:
     return f"{name:22}" + "".join(f"{cell:>13}" for cell in cells).rstrip()
 
 
-def _cell(value: Any) -> str:
+def _format_cell(value: Any) -> str:
     if value is None:
         return "-"
     return f"{value:.4f}" if isinstance(value, float) else str(value)

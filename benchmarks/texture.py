@@ -103,8 +103,8 @@ def compare_with_skimage(points: int, size: int) -> Results:
     """Compare with scikit-image: largest difference inside the mesh, and ratio of times."""
     places, source = scatter_points(points, size)
     picture = np.random.default_rng(1).random((size, size, 3))
-    ours_s, (image, mask) = time_least(lambda: warp_with_skinnet(places, source, picture))
-    theirs_s, theirs = time_least(lambda: warp_with_skimage(places, source, picture), runs=2)
+    ours_s, (image, mask) = time_runs(lambda: warp_with_skinnet(places, source, picture))
+    theirs_s, theirs = time_runs(lambda: warp_with_skimage(places, source, picture), runs=2)
     return {
         "warp_vs_skimage_max_difference": float(np.abs(image - theirs)[mask].max()),
         "warp_vs_skimage_speedup": theirs_s / ours_s,
@@ -144,10 +144,10 @@ def compare_with_trimesh(count: int, queries: int) -> Results:
         fix_normals(mesh, multibody=False)
         return np.asarray(mesh.faces)
 
-    closest_s, closest = time_least(lambda: TriangleTree(vertices, triangles).query(points))
-    centroid_s, distance = time_least(measure_by_centroids)
-    repair_s, _ = time_least(lambda: repair_mesh(Mesh(vertices, flipped)))
-    trimesh_s, _ = time_least(lambda: orient_with_trimesh(flipped), runs=2)
+    closest_s, closest = time_runs(lambda: TriangleTree(vertices, triangles).query(points))
+    centroid_s, distance = time_runs(measure_by_centroids)
+    repair_s, _ = time_runs(lambda: repair_mesh(Mesh(vertices, flipped)))
+    trimesh_s, _ = time_runs(lambda: orient_with_trimesh(flipped), runs=2)
     return {
         "closest_s": closest_s,
         "closest_centroid_s": centroid_s,
@@ -158,7 +158,7 @@ def compare_with_trimesh(count: int, queries: int) -> Results:
     }
 
 
-def time_least(action: Callable[[], Any], runs: int = RUNS) -> tuple[float, Any]:
+def time_runs(action: Callable[[], Any], runs: int = RUNS) -> tuple[float, Any]:
     """Measure the least time of several runs in seconds, and return it with the last result."""
     times = []
     for _ in range(runs):
@@ -178,9 +178,9 @@ def measure(
     """Measure every figure, by name."""
     rows = int(np.ceil(np.sqrt(vertices * 1.02)))
     surface, triangles = make_face_mesh(rows, rows)
-    mirror_s, mirror = time_least(lambda: find_mirror_vertices(surface))
-    tutte_s, uv = time_least(lambda: compute_tutte_embedding(surface, triangles, mirror))
-    raster_s, _ = time_least(lambda: rasterise(uv[triangles], size))
+    mirror_s, mirror = time_runs(lambda: find_mirror_vertices(surface))
+    tutte_s, uv = time_runs(lambda: compute_tutte_embedding(surface, triangles, mirror))
+    raster_s, _ = time_runs(lambda: rasterise(uv[triangles], size))
     source = 0.5 + surface[:, :2] / [170, 230]
     picture = np.random.default_rng(0).random((size, size, 3), np.float32)
     everywhere = np.ones(len(triangles), bool)
@@ -197,7 +197,7 @@ def measure(
         "flipped": count_flipped_triangles(uv, triangles),
         "asymmetry": float(np.abs(uv[mirror] - [1, 0] - uv * [-1, 1]).max()),
         "raster_s": raster_s,
-        "warp_s": time_least(warp_picture)[0],
+        "warp_s": time_runs(warp_picture)[0],
         **compare_with_skimage(points, small),
         **compare_with_trimesh(uneven, QUERIES),
     }

@@ -19,7 +19,7 @@ GROUPS = {
 _EDGE = 6 / 29
 
 
-def typology_angle(linear: Float[Tensor, "*shape 3"]) -> Float[Tensor, "*shape"]:
+def compute_typology_angle(linear: Float[Tensor, "*shape 3"]) -> Float[Tensor, "*shape"]:
     """Compute atan2(L* - 50, b*) in degrees, of linear sRGB whose white is D65."""
     lightness, _, b = srgb_to_lab(linear).unbind(-1)
     return torch.rad2deg(torch.atan2(lightness - 50, b))
@@ -34,6 +34,6 @@ def srgb_to_lab(linear: Float[Tensor, "*shape 3"]) -> Float[Tensor, "*shape 3"]:
     return torch.stack([116 * y - 16, 500 * (x - y), 200 * (y - z)], -1)
 
 
-def group(angle: float) -> str:
+def find_group(angle: float) -> str:
     """Return the name of the group of an angle."""
     return next(name for name, low in GROUPS.items() if angle > low or name == "dark")

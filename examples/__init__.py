@@ -1,1 +1,1 @@
-"""Narrated scripts whose pictures go into the documentation."""
+"""Scripts that make the pictures of the documentation."""

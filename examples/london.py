@@ -2,11 +2,11 @@
 
 `python -m examples.london PORTRAITS [-o FOLDER]`, with the folder of the Face Research Lab London
 Set (DeBruine and Jones, CC BY 4.0): NNN_03.jpg and NNN_03.tem with 189 landmarks each. The soft,
-even light of that studio stands in for a lightstage; its remaining shading and gloss are read as
-pigment here. Portraits are warped to their mean landmarks, multiplied by one common factor,
-inverted under D65 and the mean camera, and compared as in Figure 8. The full calibration refuses
-these pictures: they contain shading and a tone curve, which no linear transform can undo. With
-`--skins 200` so many skins are sampled from the hybrid model for synthetic faces, as skins.npz. The
+even light of that studio stands in for a lightstage; its remaining shading and specular reflection
+are read as pigment here. Portraits are warped to their mean landmarks, multiplied by one common
+factor, inverted under D65 and the mean camera, and compared as in Figure 8. The full calibration
+refuses these pictures: they contain shading and a tone curve, which no linear transform can undo.
+`--skins 200` samples so many skins from the hybrid model for synthetic faces, as skins.npz. The
 pictures show real people and stay out of the project.
 """
 
@@ -114,23 +114,23 @@ def warp_portraits(folder: Path) -> tuple[list[Path], list[np.ndarray], np.ndarr
 def find_places(mean: np.ndarray) -> ChartPlaces:
     """Find the texture coordinates of each texel of the chart in the frame of mean landmarks.
 
-    A thin-plate spline starts from directions seen from ahead, as the frame is, so that it has
-    little to bend.
+    A thin-plate spline starts from directions seen from ahead, as the frame is, so that
+    little deformation is left.
     """
     marks = np.array([pair for pair, _ in PLACES])
     right = np.array([place for _, place in PLACES])
     places = np.concatenate([right * [-1, 1], right])
     points = mean[np.concatenate([marks[:, 0], marks[:, 1]])]
     places, once = np.unique(places.round(9) + 0.0, axis=0, return_index=True)
-    spline = RBFInterpolator(_ahead(places), points[once], smoothing=1e-4)
+    spline = RBFInterpolator(_project(places), points[once], smoothing=1e-4)
     azimuth, elevation = (axis.double().numpy() for axis in compute_chart_angles(*CHART_SIZE))
     texels = np.stack(np.broadcast_arrays(azimuth, elevation), -1)
-    found = spline(_ahead(texels).reshape(-1, 2)).reshape(*CHART_SIZE, 2)
+    found = spline(_project(texels).reshape(-1, 2)).reshape(*CHART_SIZE, 2)
     return np.where(np.abs(azimuth)[..., None] < FRONTAL, found, np.nan)
 
 
-def _ahead(places: np.ndarray) -> np.ndarray:
-    """Unit vectors of azimuths and elevations, seen from ahead."""
+def _project(places: np.ndarray) -> np.ndarray:
+    """Project the directions of azimuths and elevations on the plane of a frontal picture."""
     azimuth, elevation = places[..., 0], places[..., 1]
     return np.stack([np.cos(elevation) * np.sin(azimuth), np.sin(elevation)], -1)
 

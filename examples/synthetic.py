@@ -3,7 +3,7 @@
     python -m examples.synthetic [--ict ict_facekit.npz] [--beside PHOTOS] [-o runs/synthetic.png]
 
 With a folder of photographs, a column of their faces stands beside the pictures, cropped as
-training crops them. What still tells the two apart is what the renderer lacks.
+training crops them. Visible differences between the two show what the renderer lacks.
 """
 
 import argparse

@@ -1,4 +1,4 @@
-"""Shapes are checked, hypothesis repeats itself, and shared data are found or said to be absent."""
+"""Shapes are checked, hypothesis is deterministic, and tests without shared data are skipped."""
 
 import os
 from collections.abc import Callable
@@ -8,7 +8,7 @@ import pytest
 from hypothesis import settings
 from jaxtyping import install_import_hook
 
-# Small tensors: a second thread waits more than it works, above all on a busy machine.
+# Tensors are small: a second thread would mostly wait, above all on a busy machine.
 os.environ.setdefault("OMP_NUM_THREADS", "1")
 # Before anything of the package is imported: the hook rewrites modules as they are loaded.
 install_import_hook("skinnet", "beartype.beartype")
@@ -27,7 +27,7 @@ SHARED = Path(__file__).parents[2] / "shared" / "data"
 
 @pytest.fixture(scope="session")
 def shared_data() -> Path:
-    """The folder of data that the project does not carry."""
+    """The folder of data that the project does not contain."""
     if not SHARED.is_dir():
         pytest.skip("There is no folder ../shared/data beside the repository.")
     return SHARED
@@ -35,7 +35,7 @@ def shared_data() -> Path:
 
 @pytest.fixture(scope="session")
 def random_capture() -> Callable[..., Capture]:
-    """Makes captures of a given shape: mixed lights, odd cameras, an imperfect white balance."""
+    """Makes captures of a given shape: mixed lights, random cameras, an imperfect white balance."""
     return _random_capture
 
 
@@ -45,12 +45,12 @@ def _random_capture(
     dtype: torch.dtype = torch.float64,
     components: int = CAMERA_COMPONENTS,
 ) -> Capture:
-    generator = torch.Generator().manual_seed(seed)
-    drawn = [torch.rand(*shape, n, generator=generator, dtype=dtype) for n in (len(LIGHTS), 1)]
-    light = -torch.log(drawn[0])
+    rng = torch.Generator().manual_seed(seed)
+    random = [torch.rand(*shape, n, generator=rng, dtype=dtype) for n in (len(LIGHTS), 1)]
+    light = -torch.log(random[0])
     return Capture(
         light / light.sum(-1, keepdim=True),
-        4000 + 21000 * drawn[1][..., 0],
-        torch.randn(*shape, components, generator=generator, dtype=dtype),
-        0.1 * torch.randn(*shape, 2, generator=generator, dtype=dtype),
+        4000 + 21000 * random[1][..., 0],
+        torch.randn(*shape, components, generator=rng, dtype=dtype),
+        0.1 * torch.randn(*shape, 2, generator=rng, dtype=dtype),
     )

@@ -21,7 +21,7 @@ class LastCheckpoint(Callback):
     """Writes `last.ckpt` after every epoch, at intervals, and at the last step.
 
     Args:
-        folder: The run's.
+        folder: Folder of the run.
         seconds: Time between checkpoints within an epoch.
     """
 
@@ -60,7 +60,7 @@ class PictureGrid(Callback):
     truth, where there is any, stands below the prediction.
 
     Args:
-        folder: The run's.
+        folder: Folder of the run.
         portraits: Number of portraits in the picture.
     """
 

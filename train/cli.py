@@ -31,7 +31,6 @@ from train.task import SkinTask
 
 __all__ = ["FittedFaces", "Portraits", "SkinCLI", "SyntheticFaces", "main"]
 
-
 _RENAMED = {
     "model.losses.elsewhere": "model.losses.background_reconstruction",
     "model.losses.stray": "model.losses.off_skin_shading",
@@ -43,7 +42,7 @@ _RENAMED = {
     "TwinFaces": "SyntheticFaces",
     "twin": "synthetic",
 }
-"""Keys and classes of version 0.1, and what they are called today."""
+"""Keys and classes of version 0.1, and their present names."""
 
 
 class _TrainParser(SentenceParser, LightningArgumentParser):
@@ -64,7 +63,7 @@ class SkinCLI(LightningCLI):
 
     @staticmethod
     def subcommands() -> dict[str, set[str]]:
-        """Return the commands that there are, with the arguments that they do not take."""
+        """Return the available commands, each with the arguments that it does not take."""
         kept = ("fit", "validate", "test")
         return {name: LightningCLI.subcommands()[name] for name in kept}
 
@@ -113,7 +112,7 @@ def check_checkpoint(subcommand: str, path: str | None) -> None:
     """Check the checkpoint that a command needs.
 
     Raises:
-        InputError: if it is missing, broken, or not of skinnet.
+        InputError: If it is missing, broken, or not of skinnet.
     """
     if path is None:
         if subcommand != "fit":
@@ -130,13 +129,15 @@ def keep_previous(run: Path) -> None:
     """Rename the folder of an earlier run to the next free number, so that nothing is lost.
 
     Raises:
-        InputError: for a folder whose files are not those of a run.
+        InputError: For a folder whose files are not those of a run.
     """
     run = run.resolve()
     if not run.is_dir() or not any(run.iterdir()):
         return
     if not any(next(run.glob(name), None) for name in RUN_FILES):
-        raise InputError(f"{run} holds files, but no run's; give another folder with --run.")
+        raise InputError(
+            f"{run} holds files that are not those of a run; give another folder with --run."
+        )
     number = next(n for n in range(1, 10**6) if not run.with_name(f"{run.name}.{n}").exists())
     kept = run.with_name(f"{run.name}.{number}")
     run.rename(kept)
@@ -144,15 +145,15 @@ def keep_previous(run: Path) -> None:
 
 
 def _make_progress_bar() -> RichProgressBar | TQDMProgressBar:
-    # Off a terminal Rich shows its last frame only.
+    # Without a terminal, Rich shows only its last frame.
     return RichProgressBar() if sys.stderr.isatty() else TQDMProgressBar(refresh_rate=50)
 
 
 _EXPECTED_WARNINGS = (
-    "LightningCLI's args parameter is intended",  # the tests' way in
+    "LightningCLI's args parameter is intended",  # tests pass a list
     r"(?s)\s*.*was deprecated in v4",  # Lightning uses it
     r"\s*By default only one JsonargparseDeprecationWarning",
-    "The '.*_dataloader' does not have many workers",  # drawing pictures is a small part of a step
+    "The '.*_dataloader' does not have many workers",  # sampling scenes is a small part of a step
     r"`isinstance.treespec, LeafSpec.` is deprecated",
     "Precision bf16-mixed is not supported by the model summary",
     "Checkpoint directory .* exists and is not empty",  # the run folder, on purpose

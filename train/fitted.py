@@ -24,7 +24,7 @@ from train.fitted_scenes import (
     render_fitted,
 )
 from train.stream import StreamLoader, count_seen_samples
-from train.synthetic.face_sampling import sample_gloss
+from train.synthetic.face_sampling import sample_specular
 from train.synthetic.head_cache import SPLITS
 from train.synthetic.scene import map_tensors
 from train.synthetic.scene_sampling import sample_camera, sample_light
@@ -58,28 +58,28 @@ class FittedScenes(Dataset[FittedScene]):
             torch.from_numpy(texture),
             torch.from_numpy(known)[None],
             torch.from_numpy(wall.clip(0.005, 1)).float(),
-            map_tensors(torch.Tensor.float, sample_gloss(rng)),
+            map_tensors(torch.Tensor.float, sample_specular(rng)),
             sample_light(rng),
             sample_camera(rng, self.faces.size),
         )
 
 
 class FittedFaces(LightningDataModule):
-    """Scans fitted by `skinnet maps`, seen from many sides in many lights, with their true maps.
+    """Scans fitted by `skinnet maps`, rendered from many sides in many lights, with true maps.
 
     Every face is ray-cast once from `shots` sides. Lights, cameras and exposure are those of
     `SyntheticFaces`, sampled anew on every step and rendered on the device that trains. Faces cast
-    shadows on themselves, and hollows see less of the sky.
+    shadows on themselves, and concave places receive less light from the sky.
 
     Args:
         folder: Folder of NAME_maps.npz with NAME_face.obj, as `skinnet maps` writes them.
         model: File hybrid.npz of `skinnet build-model` in the same texture space; half of the faces
-            then wear a skin sampled from it.
+            then have a skin sampled from it.
         size: Side of the square pictures in pixels.
         texels: Side of the skin textures that are rendered.
         batch_size: Pictures in a batch of each process.
         shots: Sides from which each face is seen.
-        train_samples: Pictures that are called an epoch.
+        train_samples: Pictures in an epoch of training.
         val_samples: Pictures of the validation set.
         seed: Seed of all that is sampled.
     """
@@ -108,12 +108,12 @@ class FittedFaces(LightningDataModule):
 
     @property
     def description(self) -> str:
-        """What a model card says of these data."""
+        """Return one line on these data for the files of a model."""
         text = f"{len(self.textures)} fitted scans, seed {self.seed}, {self.size} px"
         return text if self.model is None else f"{text}, half with skin of {self.model_file}"
 
     def setup(self, stage: str) -> None:
-        """Read the faces and cast their views, whatever the stage.
+        """Read the faces and cast their views, for any stage.
 
         Raises:
             InputError: If the folder holds no maps with their face, or one cannot be read.

@@ -24,7 +24,7 @@ from train.synthetic.renderer import (
     decode_sky_visibility,
     develop,
 )
-from train.synthetic.scene import CameraParameters, GlossParameters, LightParameters
+from train.synthetic.scene import CameraParameters, LightParameters, SpecularParameters
 from train.synthetic.shading import shade
 from train.synthetic.simulated_camera import simulate_sensor
 from train.synthetic.tensors import expand_colour
@@ -33,14 +33,15 @@ _YAW_SD, _PITCH_SD, _FIELD_OF_VIEW = 25.0, 8.0, 24.0
 """Standard deviations of the camera's yaw and pitch, and its field of view, in degrees."""
 
 _OIL = 1.0
-"""Oil of all of a face, relative to the picture's."""
+"""Oil at every pixel of a fitted face, relative to the oil that is sampled for the picture."""
 
 
 class FittedView(NamedTuple):
-    """What a camera sees of one face.
+    """Geometry buffers of one face from one camera.
 
-    `hit` is 1 where it sees the outside of the face, otherwise 0. `uv` holds texture coordinates in
-    the convention of `grid_sample`. All else is as in `train.synthetic.scene.HeadBuffers`.
+    `hit` is 1 where the camera sees the outside of the face, otherwise 0. `uv` holds texture
+    coordinates in the convention of `grid_sample`. All else is as in
+    `train.synthetic.scene.HeadBuffers`.
     """
 
     hit: Float[Tensor, "*batch height width"]
@@ -61,7 +62,7 @@ class FittedScene(NamedTuple):
     texture: Float[Tensor, "*batch 5 texels texels"]
     known: Float[Tensor, "*batch 1 texels texels"]
     wall: Float[Tensor, "*batch 3"]
-    gloss: GlossParameters
+    specular: SpecularParameters
     light: LightParameters
     camera: CameraParameters
 
@@ -87,7 +88,7 @@ def average_texels(
 
 
 def cast_views(path: Path, count: int, size: int, rng: np.random.Generator) -> list[FittedView]:
-    """Cast a textured face from some sides.
+    """Ray-cast a textured face from several viewpoints.
 
     Args:
         path: File of the face's mesh.
@@ -131,7 +132,7 @@ def render_fitted(scene: FittedScene, decoder: SkinDecoder, split: str = "train"
 
     Args:
         scene: A batch of scenes.
-        decoder: The skin's colours.
+        decoder: Computes the colours of skin.
         split: Train, val or test, each with its own cameras.
 
     Returns:
@@ -146,7 +147,7 @@ def render_fitted(scene: FittedScene, decoder: SkinDecoder, split: str = "train"
     share = hit * (known > 0.5)
     shading = shade(
         scene.light,
-        scene.gloss,
+        scene.specular,
         decode_normals(view.normal),
         decode_sky_visibility(view.sky_visibility),
         view.visibility_mask,

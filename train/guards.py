@@ -16,11 +16,11 @@ class FiniteGuard(Callback):
     """Raises `InputError` for losses and weights that are not finite.
 
     A loss is checked before the weights take a step with it, and weights are checked before a
-    checkpoint is written. The logged losses are checked, which all processes share, so that all of
-    them stop.
+    checkpoint is written. All processes share the logged losses, so that all of them
+    stop.
 
     Args:
-        folder: The run's, where the last good checkpoint is.
+        folder: Folder of the run, which has the last good checkpoint.
     """
 
     def __init__(self, folder: str) -> None:
@@ -48,7 +48,7 @@ class FiniteGuard(Callback):
         logged = trainer.callback_metrics
         losses = {name: value for name, value in logged.items() if name.startswith(prefix)}
         if broken := find_not_finite(losses):
-            # Broken weights break every loss; then the weights are named.
+            # Weights that are not finite spoil every loss, so the message names the weights.
             weights = find_not_finite(dict(pl_module.named_parameters()))
             what = "weights" if weights else "losses"
             raise InputError(self._explain(trainer, what, weights or broken))

@@ -14,7 +14,7 @@ class CurveLogger(Logger):
     Lightning's own CSVLogger deletes the file when a run is resumed.
 
     Args:
-        folder: The run's.
+        folder: Folder of the run.
     """
 
     def __init__(self, folder: str) -> None:
@@ -23,7 +23,7 @@ class CurveLogger(Logger):
 
     @property
     def name(self) -> str:
-        """Return a name, which Lightning asks for."""
+        """Return the name that Lightning requires."""
         return "curves"
 
     @property

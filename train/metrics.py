@@ -33,7 +33,7 @@ class ReadingMetrics(nn.Module):
             self.metrics[f"{name}_constant"] = StandardDeviation()
 
     def update(self, reading: Reading, batch: Batch) -> dict[str, Metric]:
-        """Add the pictures of a batch, and return the metrics that they count in, by name."""
+        """Add the pictures of a batch, and return the updated metrics by name."""
         skin = batch.mask > 0.5
         image = reading.reconstruction.clamp(0, 1).movedim(1, -1)
         linear = rgb_to_linear_rgb(batch.photograph).movedim(1, -1)

@@ -94,18 +94,18 @@ class Portraits(LightningDataModule):
 
     Unreadable pictures and pictures without a face are skipped, counted, and listed in
     `skipped.csv` of the run. Every step also sees a batch of `synthetic` faces, so that the maps
-    keep their meaning. In training each photograph is shown twice in different exposure and white
-    balance, so that a loss can compare what is read of both.
+    stay tied to known pigments. In training each photograph is shown twice in different exposure
+    and white balance, so that a loss can compare what is read of both.
 
     Args:
-        folder: of the photographs, searched with its subfolders.
-        size: side of the square crops in pixels.
-        batch_size: photographs in a batch of each process.
-        val_share: share of the photographs that is kept for validation.
-        unreadable_share: share of the pictures that may be unreadable; with more, training does not
+        folder: Folder of the photographs, searched with its subfolders.
+        size: Side of the square crops in pixels.
+        batch_size: Photographs in a batch of each process.
+        val_share: Share of the photographs that is kept for validation.
+        unreadable_share: Share of the pictures that may be unreadable; with more, training does not
             start.
-        seed: of the order, the augmentation and the choice of validation photographs.
-        synthetic: synthetic faces of the same size, to train on beside the photographs.
+        seed: Seed of the order, the augmentation and the choice of validation photographs.
+        synthetic: Synthetic faces of the same size, to train on beside the photographs.
     """
 
     def __init__(
@@ -130,7 +130,7 @@ class Portraits(LightningDataModule):
 
     @property
     def description(self) -> str:
-        """One line on these data for files of the model."""
+        """Return one line on these data for the files of a model."""
         return f"{len(self.crops['train'])} photographs and {self.synthetic.description}"
 
     def prepare_data(self) -> None:
@@ -148,7 +148,7 @@ class Portraits(LightningDataModule):
         self.synthetic.setup(stage)
 
     def _find(self) -> None:
-        # Not in the constructor, whose errors the parser hides in its own.
+        # This is not checked in the constructor, whose errors the parser replaces with its own.
         if self.synthetic.size != self.size:
             raise InputError(
                 f"Photographs are cut to {self.size} pixels and synthetic faces have "
@@ -223,7 +223,7 @@ def find_crops(
         The crops, and the pictures that were skipped.
 
     Raises:
-        InputError: if there is no folder or no picture in it, if more than `unreadable_share` of
+        InputError: If there is no folder or no picture in it, if more than `unreadable_share` of
             the pictures cannot be read, or if none shows a face.
     """
     pictures = find_pictures(folder)
@@ -235,7 +235,7 @@ def find_crops(
         raise InputError(_describe_unreadable(folder, unreadable, len(pictures), unreadable_share))
     if not crops:
         raise InputError(
-            f"{folder} holds no photograph with a face in it ({len(pictures)} pictures looked at)."
+            f"{folder} holds no photograph with a face in it ({len(pictures)} pictures searched)."
         )
     _report(folder, len(crops), unreadable, len(skipped) - len(unreadable))
     return crops, skipped
@@ -245,7 +245,7 @@ def find_pictures(folder: Path) -> list[Path]:
     """List the pictures in a folder and its subfolders by name.
 
     Raises:
-        InputError: if there is no folder or no picture in it.
+        InputError: If there is no folder or no picture in it.
     """
     if not folder.is_dir():
         raise InputError(f"{folder} is not a folder; give the folder of your photographs.")
@@ -258,7 +258,7 @@ def find_pictures(folder: Path) -> list[Path]:
 
 
 def write_skipped(skipped: list[Skipped], path: Path) -> None:
-    """Write a table of the pictures that were skipped; without any, only its head."""
+    """Write a table of the pictures that were skipped; without any, only its header."""
     text = io.StringIO()
     rows = csv.writer(text, lineterminator="\n")
     rows.writerow(("picture", "reason"))
@@ -270,7 +270,8 @@ def write_skipped(skipped: list[Skipped], path: Path) -> None:
 def _describe_unreadable(folder: Path, unreadable: list[str], pictures: int, allowed: float) -> str:
     return (
         f"{len(unreadable)} of {pictures} pictures in {folder} cannot be read "
-        f"({len(unreadable) / pictures:.0%}, and {allowed:.0%} may): {list_names(unreadable, 5)}. "
+        f"({len(unreadable) / pictures:.0%}; at most {allowed:.0%} may be unreadable): "
+        f"{list_names(unreadable, 5)}. "
         "Repair or remove them, or allow more with --data.init_args.unreadable_share."
     )
 

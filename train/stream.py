@@ -41,7 +41,7 @@ class StreamSampler(DistributedSampler[int]):
 class StreamLoader(DataLoader[Any]):
     """A loader over a `StreamSampler`.
 
-    Lightning resumes loaders that have a state, so it has an empty one.
+    Lightning resumes only loaders that have a state, so this one has an empty state.
 
     Args:
         dataset: The samples by index.
@@ -69,14 +69,14 @@ class StreamLoader(DataLoader[Any]):
         return {}
 
     def load_state_dict(self, state: dict[str, Any]) -> None:
-        """Ignore the state; the sampler knows what was seen."""
+        """Ignore the state; the sampler counts the samples itself."""
 
 
 def count_seen_samples(trainer: Trainer | None, batch_size: int) -> int:
     """Count the samples that this process has trained on, over all epochs and interruptions.
 
     Raises:
-        InputError: if gradients are accumulated. The last step of an epoch may then have fewer
+        InputError: If gradients are accumulated. The last step of an epoch may then have fewer
             batches, so that the samples do not follow from the steps.
     """
     if trainer is None:

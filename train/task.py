@@ -74,14 +74,14 @@ class SkinTask(LightningModule):
     """Trains a `SkinAutoencoder`.
 
     Args:
-        optics: preset of the skin's optical constants.
-        widths: channels of the encoder at each level.
-        working_size: longer side in pixels of the crops that the model is to be used on.
-        losses: weight of each loss.
-        learning_rate: largest learning rate of AdamW, reached after the warm-up.
-        weight_decay: of AdamW.
-        warmup_steps: steps in which the learning rate rises; it then falls as a cosine to zero.
-        weights: a .safetensors file to start from (fine-tuning). To continue a run, use
+        optics: Preset of the skin's optical constants.
+        widths: Channels of the encoder at each level.
+        working_size: Longer side in pixels of the crops that the model is to be used on.
+        losses: Weight of each loss.
+        learning_rate: Largest learning rate of AdamW, reached after the warm-up.
+        weight_decay: Weight decay of AdamW.
+        warmup_steps: Steps in which the learning rate rises; it then falls as a cosine to zero.
+        weights: A .safetensors file to start from (fine-tuning). To continue a run, use
             --ckpt_path instead.
     """
 
@@ -100,10 +100,11 @@ class SkinTask(LightningModule):
         self.model = SkinAutoencoder(
             AutoencoderConfig(optics, tuple(map(int, widths)), int(working_size))
         )
-        # A third faster on a CPU; torch's types leave memory formats out.
+        # A third faster on a CPU; torch's type hints lack memory formats.
         self.model.to(memory_format=torch.channels_last)  # type: ignore[call-overload]
         self.weight_of = losses
-        # Plain numbers: restricted ones end in the optimizer's state, which weights_only refuses.
+        # Plain numbers, because weights_only cannot load the parser's restricted numbers from a
+        # checkpoint of the optimizer.
         self.learning_rate = float(learning_rate)
         self.weight_decay = float(weight_decay)
         self.warmup_steps = int(warmup_steps)
@@ -116,8 +117,8 @@ class SkinTask(LightningModule):
             self.model.load_state_dict(start.state_dict())
         except RuntimeError as error:
             raise InputError(
-                f"{path} holds weights of another shape than this configuration's; give the widths "
-                "that it was trained with."
+                f"{path} holds weights whose shapes do not fit this configuration; give the widths "
+                "that they were trained with."
             ) from error
         return start.trained_on
 
@@ -172,8 +173,8 @@ class SkinTask(LightningModule):
     def _read(self, batches: dict[str, Batch]) -> dict[str, Reading]:
         """Read all kinds of pictures in one pass.
 
-        In passes of their own, batch normalisation would train with statistics of each kind and
-        then evaluate all kinds with a mixture of them.
+        If each kind had its own pass, batch normalisation would train with the statistics of each
+        kind, and evaluate all kinds with a mixture of them.
         """
         counts = [len(part.photograph) for part in batches.values()]
         whole = self(torch.cat([part.photograph for part in batches.values()]))

@@ -17,7 +17,7 @@ from benchmarks.pictures import Pictures, Pixels, render_under_daylight
 from benchmarks.reader import NetworkReader, compose
 from benchmarks.running_statistics import RunningStatistics
 from benchmarks.scores import Scores
-from benchmarks.typology import GROUPS, group, typology_angle
+from benchmarks.typology import GROUPS, compute_typology_angle, find_group
 from skinnet.network.autoencoder import AutoencoderConfig, SkinAutoencoder, SkinMaps
 from skinnet.physics import SkinDecoder, SpectralCamera
 
@@ -43,18 +43,18 @@ def found(model: SkinAutoencoder, tmp_path_factory: pytest.TempPathFactory) -> d
 
 @pytest.fixture(scope="module")
 def skins() -> Pictures:
-    """Six even skins, ever darker, without shading or gloss, as their true colour shows them."""
+    """Six even skins, ever darker, without shading or specular reflection, in their true colour."""
     melanin = torch.logspace(-1.9, -0.6, 6).repeat_interleave(16)
     hemoglobin = torch.full_like(melanin, 0.04)
     albedo = render_under_daylight(melanin, hemoglobin, SkinDecoder())
     one = torch.ones_like(melanin)
     mask = torch.ones(6, 4, 4, dtype=torch.bool)
     truth = Pixels(melanin, hemoglobin, one, 0 * one, albedo, albedo, mask)
-    angle = typology_angle(albedo[::16])
+    angle = compute_typology_angle(albedo[::16])
     return Pictures(np.zeros((6, 4, 4, 3), np.uint8), truth, mask.nonzero()[:, 0], angle)
 
 
-def test_its_keys_are_the_contract(found: dict[str, Any]) -> None:
+def test_results_have_the_agreed_keys(found: dict[str, Any]) -> None:
     for row in ("constant", "lookup", "ica", "stage2"):
         assert set(found[row]) == {"melanin", "hemoglobin", *COLUMNS}
         assert set(found[row]["melanin"]) == set(found[row]["hemoglobin"]) == PIGMENT
@@ -67,8 +67,12 @@ def test_its_keys_are_the_contract(found: dict[str, Any]) -> None:
     assert targets.list_not_beaten(found | {"stage2": None}) is None
 
 
-def test_its_table_has_a_line_a_column_with_what_is_asked(found: dict[str, Any]) -> None:
-    lines = {line.split()[0]: line.split() for line in targets.lay_out(found).splitlines() if line}
+def test_the_printed_table_has_a_line_for_each_column_with_its_target(
+    found: dict[str, Any],
+) -> None:
+    lines = {
+        line.split()[0]: line.split() for line in targets.format_table(found).splitlines() if line
+    }
     assert lines["melanin.r_image"][-2:] == [">=", "0.98"]
     assert lines["diffuse"][4] == "-" and len(lines["diffuse"]) == 6
 
@@ -85,7 +89,7 @@ def test_perfect_predictions_have_no_error(skins: Pictures) -> None:
     assert results["mask_iou"] == 1 and results["leak"] is None
 
 
-def test_shading_read_as_melanin_is_a_leak(skins: Pictures) -> None:
+def test_melanin_error_that_follows_shading_has_correlation_minus_one(skins: Pictures) -> None:
     shading = torch.rand(len(skins.picture), generator=torch.Generator().manual_seed(0))
     lit = skins._replace(truth=skins.truth._replace(shading=shading))
     scores = Scores()
@@ -93,7 +97,7 @@ def test_shading_read_as_melanin_is_a_leak(skins: Pictures) -> None:
     assert scores.compute_results(scores)["leak"] == pytest.approx(-1)
 
 
-def test_moments_are_numpy_s() -> None:
+def test_running_statistics_agree_with_numpy() -> None:
     x, y = np.random.default_rng(0).normal(0.1, 0.02, (2, 3, 100))
     y = x + 0.5 * y
     moments = RunningStatistics()
@@ -105,17 +109,17 @@ def test_moments_are_numpy_s() -> None:
     assert RunningStatistics().rmse is None and RunningStatistics().r is None
 
 
-def test_typology_angle_is_that_of_colour_science() -> None:
+def test_typology_angle_agrees_with_colour_science() -> None:
     linear = np.random.default_rng(0).uniform(0.002, 0.9, (50, 3))
     xyz = colour.RGB_to_XYZ(linear, "sRGB", apply_cctf_decoding=False)
     lightness, _, b = colour.XYZ_to_Lab(xyz, colour.CCS_ILLUMINANTS[
         "CIE 1931 2 Degree Standard Observer"]["D65"]).T  # fmt: skip
     expected = np.rad2deg(np.arctan2(lightness - 50, b))
-    assert np.abs(typology_angle(torch.from_numpy(linear)).numpy() - expected).max() < 0.2
-    assert [group(angle) for angle in (60, 50, 30, 20, 0, -50)] == list(GROUPS)
+    assert np.abs(compute_typology_angle(torch.from_numpy(linear)).numpy() - expected).max() < 0.2
+    assert [find_group(angle) for angle in (60, 50, 30, 20, 0, -50)] == list(GROUPS)
 
 
-def test_baselines_sort_plain_skins(skins: Pictures) -> None:
+def test_baselines_order_plain_skins_by_melanin(skins: Pictures) -> None:
     decoder = SkinDecoder()
     lookup, ica = Lookup(decoder), Tsumura(decoder)
     ica.fit(skins)
@@ -163,7 +167,7 @@ def test_a_constant_reading_is_stable(tmp_path: Path) -> None:
     assert 0 < found["reconstruction"] < 1 and found["ita_rank"] is None
 
 
-def test_disturbances_do_what_they_say() -> None:
+def test_disturbances_change_exposure_size_and_white_point() -> None:
     photograph = np.full((20, 30, 3), 100, np.uint8)
     changed = {name: change(photograph) for name, change in disturbances.DISTURBANCES.items()}
     assert changed["exposure_up"].mean() > 130 and changed["exposure_down"].mean() < 80
@@ -179,8 +183,8 @@ def test_disturbances_do_what_they_say() -> None:
     assert disturbances.compute_gain(7000.0) == pytest.approx(white / before, abs=0.01)
 
 
-def test_skins_are_measured_by_their_wall() -> None:
-    """Whatever the light, its colour and exposure are taken off with the wall's."""
+def test_typology_angles_are_relative_to_the_wall() -> None:
+    """The colour and exposure of any light are divided out with those of the wall."""
     melanin = torch.logspace(-1.7, -0.6, 6)
     skin = render_under_daylight(melanin, torch.full_like(melanin, 0.04), SkinDecoder()).numpy()
     light = np.random.default_rng(0).uniform(0.5, 1.5, (6, 3))

@@ -19,7 +19,7 @@ def found() -> report.Results:
     return spectra.measure(radii=(0.0, 10e-4, 20e-4, 30e-4, 40e-4))
 
 
-def test_spectra_report_every_preset_and_what_stands_beside_them(found: report.Results) -> None:
+def test_spectra_report_every_preset_and_every_comparison(found: report.Results) -> None:
     assert set(found) == {
         *PRESETS,
         "split_half",
@@ -44,27 +44,27 @@ def test_spectra_reach_their_targets(found: report.Results) -> None:
         assert found[name]["median"] <= 0.019 and found[name]["p95"] <= 0.028
 
 
-def test_a_radius_chosen_on_others_is_as_good(found: report.Results) -> None:
+def test_a_vessel_radius_chosen_on_other_people_is_as_good(found: report.Results) -> None:
     half = found["split_half"]
     assert half["median"] <= 0.0170 and half["worst_median"] <= 0.019
     assert sum(half["r_um"].values()) == half["splits"]
     assert all(15 <= float(radius) <= 40 for radius in half["r_um"])
 
 
-def test_principal_components_are_the_known_yardstick(found: report.Results) -> None:
+def test_principal_components_have_their_known_errors(found: report.Results) -> None:
     expected = {"1": 0.0116, "2": 0.0074, "3": 0.0032}
     assert found["pca"] == pytest.approx(expected, abs=1e-4)
 
 
 def test_fit_finds_what_was_rendered() -> None:
     model = SkinReflectance(dtype=torch.float64).bands
-    generator = torch.Generator().manual_seed(0)
-    truth = torch.rand(20, 2, generator=generator, dtype=torch.float64) * torch.tensor([0.6, 0.3])
+    rng = torch.Generator().manual_seed(0)
+    truth = torch.rand(20, 2, generator=rng, dtype=torch.float64) * torch.tensor([0.6, 0.3])
     truth[0], truth[1] = torch.tensor([0.0, 0.3]), torch.tensor([0.01, 0.0])
     assert torch.allclose(spectra.fit(model, model(*truth.T)), truth, atol=1e-6)
 
 
-def test_spectra_are_those_shared(shared_data: Path) -> None:
+def test_spectra_equal_the_shared_file(shared_data: Path) -> None:
     shared = (shared_data / "spectra" / "nist_forearm_100.csv").read_text()
     ours = (Path(spectra.__file__).parent / "data" / "nist_forearm_100.csv").read_text()
     assert ours.startswith("# ") and "10.18434/M38597" in ours.splitlines()[0]
@@ -83,11 +83,11 @@ def test_decoder_reports_its_figures() -> None:
 
 
 @pytest.mark.parametrize("at_once", [True, False])
-def test_the_usual_way_is_the_same_function(at_once: bool) -> None:
+def test_the_spectral_grid_agrees_with_the_decoder(at_once: bool) -> None:
     bands = decoder.SkinDecoder(fast=False)
-    view = decoder.draw_scene(2, 32)
-    expected = decoder.decode(bands, *view)
-    assert torch.allclose(decoder.SpectralGrid(bands, at_once)(*view), expected, atol=1e-3)
+    scene = decoder.sample_scene(2, 32)
+    expected = decoder.decode(bands, *scene)
+    assert torch.allclose(decoder.SpectralGrid(bands, at_once)(*scene), expected, atol=1e-3)
 
 
 def test_report_is_a_table_or_one_object(
@@ -129,7 +129,7 @@ def test_lookup_reports_its_figures() -> None:
     assert found["round_trip_median"] <= 1e-4 and found["round_trip_p99"] <= 1e-3
 
 
-def test_the_map_of_the_lookup_has_no_texel_twice() -> None:
+def test_the_map_of_the_lookup_has_no_equal_texels() -> None:
     skin, matrix = (
         lookup.SkinLookup(SkinReflectance(dtype=torch.float64)),
         spectra.load_d65_matrix(),

@@ -97,7 +97,7 @@ def test_a_folder_of_something_else_is_left_alone(
     (tmp_path / "configs").mkdir()
     (tmp_path / "configs" / "config.yaml").write_text("precious")
     assert fit(tmp_path / "configs", "--trainer.max_steps=1") == 2
-    assert "configs holds files, but no run's" in capsys.readouterr().err
+    assert "configs holds files that are not those of a run" in capsys.readouterr().err
     assert (tmp_path / "configs" / "config.yaml").read_text() == "precious"
 
 

@@ -78,7 +78,7 @@ def test_averaging_keeps_the_mean_of_what_is_known() -> None:
                                rtol=1e-5)  # fmt: skip
 
 
-def test_half_of_the_faces_wear_a_sampled_skin(faces: Path, tmp_path: Path) -> None:
+def test_half_of_the_faces_have_a_sampled_skin(faces: Path, tmp_path: Path) -> None:
     texture, colour = load_maps(faces / "a_maps.npz")
     zero = np.zeros((SIZE, SIZE, 3), np.float32)
     people = {

@@ -1,4 +1,4 @@
-"""Training stops in words before it ruins what it has."""
+"""Training stops with a sentence before it overwrites good weights."""
 
 from collections.abc import Callable
 from functools import partial

@@ -59,7 +59,7 @@ def test_more_unreadable_pictures_than_the_share_are_refused(tmp_path: Path) -> 
     for number in range(9):
         (tmp_path / f"broken_{number}.jpg").write_bytes(b"no picture")
     with pytest.raises(
-        InputError, match=r"9 of 10 pictures in .* cannot be read .90%, and 80%"
+        InputError, match=r"9 of 10 pictures in .* cannot be read .90%; at most 80%"
     ) as no:
         find_crops(tmp_path, 32, unreadable_share=0.8)
     message = str(no.value)

@@ -1,4 +1,4 @@
-"""Bald heads of ICT-FaceKit, with expressions and eyes that look around."""
+"""Bald heads of ICT-FaceKit, with expressions and a random gaze."""
 
 import numpy as np
 from jaxtyping import Float
@@ -56,7 +56,7 @@ def _chart_eye(ball: Float[np.ndarray, "points 3"]) -> Float[np.ndarray, "points
 
 
 def _find_centre(ball: Float[np.ndarray, "points 3"]) -> Float[np.ndarray, "3"]:
-    """Middle of an eyeball without its cornea, which bulges ahead."""
+    """Middle of an eyeball without its cornea, which bulges forward."""
     low, high = ball.min(0), ball.max(0)
     middle = np.asarray((low + high) / 2)
     middle[2] = low[2] + (high - low)[:2].mean() / 2

@@ -15,7 +15,7 @@ _Grid = Float[np.ndarray, "rows columns"]
 
 
 class Neck(NamedTuple):
-    """Foot of the neck, about 1.3 half heads under the eyes: its middle and its half axes."""
+    """Base of the neck, about 1.3 half heads under the eyes: its middle and its half axes."""
 
     x: float
     z: float
@@ -24,10 +24,10 @@ class Neck(NamedTuple):
 
 
 class _Torso(NamedTuple):
-    """Height of the neck's foot, fall of the shoulders, half axes, and exponent of the outline."""
+    """Height of the neck's base, drop of the shoulders, half axes, and exponent of the outline."""
 
-    foot: float
-    fall: float
+    base: float
+    drop: float
     half_width: float
     half_depth: float
     edge: float
@@ -57,7 +57,7 @@ def make_bust(neck: Neck, rng: np.random.Generator) -> LabelledMesh:
 def _make_chest(neck: Neck, torso: _Torso, azimuth: Float[np.ndarray, "azimuths"]) -> LabelledMesh:
     along = np.linspace(0, 1.2, _STEPS)[:, None] + 0 * azimuth
     points = _place_on_torso(neck, torso, along, azimuth + 0 * along)
-    down = torso.foot - points[..., 1]
+    down = torso.base - points[..., 1]
     chart = np.stack([azimuth + 0 * along, -1.4 - 0.4 * down], -1)
     return label_mesh(
         points.reshape(-1, 3), triangulate_grid(*along.shape), SKIN, chart.reshape(-1, 2)
@@ -87,7 +87,7 @@ def _place_on_torso(
     z = 0.9 * neck.half_depth * (1 - out) + torso.half_depth * out
     # A quarter of a superellipse ends upright, as arms and chest do; the neck rises from it.
     round_ = 1 - (1 - out**torso.edge).clip(0) ** (1 / torso.edge)
-    y = torso.foot + off + 0.3 * (1 - out) ** 4 - torso.fall * (0.25 * out + 0.75 * round_)
+    y = torso.base + off + 0.3 * (1 - out) ** 4 - torso.drop * (0.25 * out + 0.75 * round_)
     under = (along - 1).clip(0)
     y = y * (1 - under) + _BOTTOM * under
     middle = neck.z - 0.1 * out

@@ -14,7 +14,7 @@ from train.synthetic.facial_hair import (
     cover_with_beard,
     cover_with_brows,
     cover_with_lashes,
-    evaluate_bell,
+    evaluate_gaussian,
 )
 from train.synthetic.scene import (
     CHART_SIZE,
@@ -42,8 +42,8 @@ class FaceCharts(NamedTuple):
     """A batch of painted faces on their charts.
 
     `melanin` and `hemoglobin` are volume fractions. `cover_colour` is the linear sRGB of what
-    covers the skin, `cover` its opacity. `oil` is relative to the picture's. `bump` holds the
-    slopes of the skin's relief.
+    covers the skin, `cover` its opacity. `oil` is relative to that of the picture. `bump`
+    holds the gradients of the skin's relief.
     """
 
     melanin: _Map
@@ -78,7 +78,7 @@ def paint_face(face: FaceParameters) -> FaceCharts:
 @cache
 def _evaluate_regions(device: torch.device) -> Float[Tensor, "regions rows columns"]:
     azimuth, elevation = (axis.to(device) for axis in compute_chart_angles(*CHART_SIZE))
-    return torch.stack([evaluate_bell(azimuth, elevation, *place) for place in _REGIONS])
+    return torch.stack([evaluate_gaussian(azimuth, elevation, *place) for place in _REGIONS])
 
 
 def _spread_pigments(
@@ -121,7 +121,7 @@ def _spread_moles(marks: MarkParameters) -> _Map:
     centre, height, radius, factor = (part[..., None, None] for part in marks.moles.unbind(2))
     across = torch.exp(-(((azimuth - centre) / radius) ** 2) / 2)
     along = torch.exp(-(((elevation - height) / radius) ** 2) / 2)
-    # Separable bells, so that six of them cost two thin products.
+    # The Gaussians are separable: two small matrix products paint all of them.
     return torch.matmul((factor * along)[..., 0].mT, across[:, :, 0])[:, None]
 
 
@@ -137,7 +137,7 @@ def _list_layers(
     hair_colour = expand_colour(hair.colour) * resize_to_chart(hair.strands).exp()
     dark = torch.tensor([0.03, 0.010, 0.008], device=side.device)[None, :, None, None]
     mouth = torch.exp(-(((elevation + 0.66) / 0.010) ** 2)) * soft_step(0.20 - side, 0.04)
-    nostrils = evaluate_bell(azimuth, elevation, 0.075, -0.435, 0.028, 0.015)
+    nostrils = evaluate_gaussian(azimuth, elevation, 0.075, -0.435, 0.028, 0.015)
     lips = (1.6 * regions[4]).clamp_max(1) * expand_scalar(features.make_up)
     return [
         (expand_colour(features.lipstick), lips),

@@ -12,22 +12,24 @@ from train.synthetic.scene import (
     BeardParameters,
     FaceParameters,
     FeatureParameters,
-    GlossParameters,
     HairParameters,
     MarkParameters,
     PigmentParameters,
     SkinParameters,
+    SpecularParameters,
 )
 
 MELANIN_RANGE = (0.015, 0.25)
-"""Base fraction of melanin, uniform in its logarithm: typology angles of 73 to -38 degrees, and
-with the gloss that an instrument sees a lightness of 80 to 30."""
+"""Base fraction of melanin, uniform in its logarithm.
+
+The typology angles are 73 to -38 degrees. The lightness L* is 80 to 30 if specular reflection is
+included, as in the measurements of an instrument."""
 
 RANDOMISED_MELANIN_RANGE = (0.015, 0.33)
-"""The same where skin is domain-randomised.
+"""Base fraction of melanin of domain-randomised skin.
 
 Very dark skin in photographs is darker and greyer than skin of the test set. A network that was
-trained without any reads it as pale skin in little light."""
+trained without such skin reads it as pale skin in dim light."""
 
 HEMOGLOBIN_RANGE = (0.018, 0.090)
 """Base fraction of hemoglobin, uniform in its logarithm: somewhat more than the middle 90 % of
@@ -49,7 +51,8 @@ def sample_face(rng: np.random.Generator, domain_randomised: bool = False) -> Fa
 
     Args:
         rng: Random numbers.
-        domain_randomised: Takes melanin from `RANDOMISED_MELANIN_RANGE`, for training alone.
+        domain_randomised: Whether to sample melanin from `RANDOMISED_MELANIN_RANGE`, for training
+            alone.
 
     Returns:
         Parameters in the precision that they were sampled in, most of them in float64.
@@ -88,7 +91,7 @@ def _sample_skin(rng: np.random.Generator, f_mel: float) -> SkinParameters:
     )
     bump = rng.uniform(0.01, 0.07) * rng.standard_normal((2, *CHART_SIZE), np.float32)
     none = torch.tensor(0.0)
-    return SkinParameters(melanin, hemoglobin, none, torch.from_numpy(bump), sample_gloss(rng))
+    return SkinParameters(melanin, hemoglobin, none, torch.from_numpy(bump), sample_specular(rng))
 
 
 def sample_regions(
@@ -104,9 +107,9 @@ def sample_regions(
     return melanin, hemoglobin
 
 
-def sample_gloss(rng: np.random.Generator) -> GlossParameters:
+def sample_specular(rng: np.random.Generator) -> SpecularParameters:
     """Sample the oil on skin and the roughness of its lobe, in float64."""
-    return GlossParameters(
+    return SpecularParameters(
         **make_tensors(oil=np.exp(rng.normal(-0.1, 0.4)), roughness=rng.uniform(0.32, 0.65))
     )
 

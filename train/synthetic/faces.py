@@ -14,7 +14,7 @@ from train.batch import Batch
 from train.stream import StreamLoader, count_seen_samples
 from train.synthetic.head_cache import SPLITS, load_or_cast_heads
 from train.synthetic.head_cast import HeadCast
-from train.synthetic.model_skins import ModelSkins, load_model_skins, wear_model_skin
+from train.synthetic.model_skins import ModelSkins, apply_model_skin, load_model_skins
 from train.synthetic.renderer import render
 from train.synthetic.scene import HeadBuffers, SceneParameters, map_tensors
 from train.synthetic.scene_sampling import sample_scene
@@ -26,15 +26,16 @@ STAGES = {"fit": ("train", "val"), "validate": ("val",), "test": ("test",)}
 class SyntheticScenes(Dataset[SceneParameters]):
     """Random scenes of given heads, sampled from (seed, split, index): the same on every machine.
 
-    Heads take turns, so that each is there equally often if the samples are a multiple of them.
+    Scenes use the heads in turn. Each head is used equally often if the number of samples is a
+    multiple of the number of heads.
 
     Args:
         heads: Buffers of all heads, stacked.
         split: Train, val or test.
         samples: Number of scenes.
         seed: Seed of the scenes.
-        skins: Skins of a hybrid model; half of the faces then wear one. All else in the scenes is
-            the same with skins and without.
+        skins: Skins of a hybrid model, one of which half of the faces then have. All else in the
+            scenes is the same with skins and without.
         domain_randomised: As in `sample_scene`; for training alone.
     """
 
@@ -62,7 +63,7 @@ class SyntheticScenes(Dataset[SceneParameters]):
         if self.skins is None:
             return scene
         rng = np.random.default_rng([*self.key, index, 1])
-        return scene._replace(face=wear_model_skin(scene.face, rng, self.skins))
+        return scene._replace(face=apply_model_skin(scene.face, rng, self.skins))
 
 
 class SyntheticFaces(LightningDataModule):
@@ -79,13 +80,14 @@ class SyntheticFaces(LightningDataModule):
         heads: Heads of the training set.
         val_heads: Heads of the validation set.
         test_heads: Heads of the test set.
-        train_samples: Pictures that are called an epoch.
+        train_samples: Pictures in an epoch of training.
         val_samples: Pictures of the validation set.
         test_samples: Pictures of the test set.
         ict: ICT-FaceKit's model as an .npz; without it all heads are procedural.
         geometry: Folder in which the heads are kept.
-        skins: .npz of `python -m train.synthetic.skins` or `examples/london.py`, skins sampled from
-            a hybrid model; half of the faces then wear one. Without it all skins are painted.
+        skins: .npz of `python -m train.synthetic.skins` or `examples/london.py`: skins sampled from
+            a hybrid model, one of which half of the faces then have. Without it all skins are
+            painted.
         seed: Seed of everything that is sampled.
         workers: Processes that cast heads and sample scenes; 0 does both in the training process.
     """
@@ -119,14 +121,14 @@ class SyntheticFaces(LightningDataModule):
 
     @property
     def description(self) -> str:
-        """What a model card says of these data."""
+        """Return one line on these data for the files of a model."""
         kind = "procedural heads" if self.ict is None else "ICT-FaceKit and procedural heads"
         heads = f"{self.heads['train']} {kind} of skinnet's synthetic renderer"
         text = f"{heads}, seed {self.seed}, {self.size} px"
         return text if self.skins_file is None else f"{text}, half with skins of {self.skins_file}"
 
     def prepare_data(self) -> None:
-        """Cast the heads that are missing; of several processes on a machine, one does."""
+        """Cast the heads that are missing, in one process of each machine."""
         assert self.trainer is not None and self.trainer.state.fn is not None
         for split in STAGES[self.trainer.state.fn.value]:
             self._load_heads(split)

@@ -7,16 +7,16 @@ from train.synthetic.scene import BeardParameters, HairParameters
 from train.synthetic.tensors import expand_scalar, soft_step
 
 
-def evaluate_bell(
+def evaluate_gaussian(
     azimuth: Tensor, elevation: Tensor, centre: float, height: float, width: float, tall: float
 ) -> Tensor:
-    """Evaluate a bell on both sides of the face, or on its middle.
+    """Evaluate a Gaussian on both sides of the face, or on its middle line.
 
     Args:
         azimuth: In radians.
         elevation: In radians.
-        centre: Azimuth of the bell's middle; 0 makes one bell, otherwise there are two.
-        height: Elevation of the bell's middle.
+        centre: Azimuth of the maximum; 0 gives one maximum, any other value gives two.
+        height: Elevation of the maximum.
         width: Standard deviation in azimuth.
         tall: Standard deviation in elevation.
 
@@ -25,7 +25,7 @@ def evaluate_bell(
 
     Example:
         >>> place = torch.tensor([0.5, -0.5, 0.0])
-        >>> evaluate_bell(place, torch.zeros(3), 0.5, 0.0, 0.1, 0.1)
+        >>> evaluate_gaussian(place, torch.zeros(3), 0.5, 0.0, 0.1, 0.1)
         tensor([1.0000e+00, 1.0000e+00, 3.7267e-06])
     """
     across = (azimuth.abs() - centre if centre else azimuth) / width
@@ -46,7 +46,7 @@ def cover_with_beard(beard: BeardParameters, side: Tensor, elevation: Tensor) ->
     jaw = soft_step(-0.42 - elevation - 0.35 * (1 - (side / 0.6).clamp(0, 1)) * (side > 0.25), 0.06)
     lip = soft_step(elevation + 0.60, 0.03) * soft_step(0.35 - side, 0.05)
     jaw = jaw * (1 - lip * (1 - expand_scalar(beard.moustache)))
-    lips = evaluate_bell(side, elevation, 0.0, -0.66, 0.16, 0.06)
+    lips = evaluate_gaussian(side, elevation, 0.0, -0.66, 0.16, 0.06)
     opacity = jaw * (1 - lips).clamp(0, 1) * soft_step(1.4 - side, 0.1)
     opacity = opacity * soft_step(elevation + 1.25, 0.1)
     hairs = 0.8 + 0.2 * beard.grain

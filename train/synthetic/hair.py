@@ -1,4 +1,4 @@
-"""Hair on a synthetic head: a cap on the scalp, and a curtain if it is long."""
+"""Hair on a synthetic head: a cap on the scalp, and a hanging surface for long hair."""
 
 from typing import NamedTuple
 

@@ -34,7 +34,7 @@ class HeadCast(NamedTuple):
     visibility_mask: UInt64[np.ndarray, "*count size size"]
 
     def to_buffers(self) -> HeadBuffers:
-        """Hand out the same memory as tensors.
+        """Return the same memory as tensors.
 
         The masks become signed integers, which torch can shift; their bits do not change.
         """

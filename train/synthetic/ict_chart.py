@@ -18,7 +18,8 @@ LANDMARK_PLACES: tuple[tuple[tuple[int, ...], tuple[float, float]], ...] = (
 )  # fmt: skip
 """Landmarks of the mean head and the azimuth and elevation at which they are painted.
 
-Numbers are those of iBUG's 68 on the face's left; of several the middle is meant."""
+Numbers are those of iBUG's 68 landmarks on the left side of the face. Several numbers stand for the
+mean of their landmarks."""
 
 
 def chart_skin(
@@ -42,7 +43,7 @@ def chart_skin(
     pairs += [(np.array(place), place) for place in _list_anchors()]
     angles = np.array([angles for angles, _ in pairs])
     places = np.array([place for _, place in pairs])
-    # Both sides of the face; what lies on its middle line counts once.
+    # Both sides of the face; points on its middle line are used once.
     source, once = np.unique(
         np.concatenate([angles, angles * [-1, 1]]).round(9), axis=0, return_index=True
     )

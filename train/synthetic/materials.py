@@ -16,7 +16,7 @@ from train.synthetic.scene import (
 from train.synthetic.tensors import expand_colour, expand_scalar, soft_step
 
 OIL = torch.zeros(8)
-"""Gloss of each label but skin, relative to oily skin."""
+"""Oil of each label except skin: a factor on its specular reflection, 1 for oily skin."""
 OIL[EYE], OIL[TEETH], OIL[MOUTH], OIL[GLASSES], OIL[HAIR] = 1.5, 1.0, 0.5, 1.5, 0.3
 
 _Image = Float[Tensor, "batch 3 height width"]

@@ -1,4 +1,4 @@
-"""Skins of a hybrid model: their file, and faces that wear them."""
+"""Skins of a hybrid model: their file, and how they are applied to faces."""
 
 from pathlib import Path
 from typing import NamedTuple
@@ -12,8 +12,8 @@ from skinnet.errors import InputError
 from skinnet.files import write_atomically
 from train.synthetic.scene import CHART_SIZE, FaceParameters
 
-WORN_SHARE = 0.5
-"""Share of the pictures whose face wears a skin, where there are any."""
+MODEL_SKIN_SHARE = 0.5
+"""Share of the pictures whose face has a skin of the model, if a model is given."""
 
 _STORED = {"melanin": "melanin", "hemoglobin": "blood"}
 """Names of the arrays in the file."""
@@ -26,10 +26,10 @@ class ModelSkins(NamedTuple):
     hemoglobin: Float16[np.ndarray, "samples rows columns"]
 
 
-def wear_model_skin(
+def apply_model_skin(
     face: FaceParameters, rng: np.random.Generator, skins: ModelSkins
 ) -> FaceParameters:
-    """Let a face wear one of the skins, mirrored or not, or leave it as it is.
+    """Apply one of the skins to a face, mirrored or not, or leave the face as it is.
 
     Args:
         face: One face, without a batch axis.
@@ -37,16 +37,16 @@ def wear_model_skin(
         skins: One or more skins.
 
     Returns:
-        The face; a share of `WORN_SHARE` wears a skin.
+        The face; a share `MODEL_SKIN_SHARE` of all faces gets a skin.
     """
-    worn = rng.random() < WORN_SHARE
+    applied = rng.random() < MODEL_SKIN_SHARE
     number, step = rng.integers(len(skins.melanin)), rng.choice([1, -1])
-    charts = (worn * one[number, :, ::step].astype(np.float32) for one in skins)
+    charts = (applied * one[number, :, ::step].astype(np.float32) for one in skins)
     melanin, hemoglobin = (torch.from_numpy(np.ascontiguousarray(one)[None]) for one in charts)
     skin = face.skin._replace(
         melanin=face.skin.melanin._replace(model_skin=melanin),
         hemoglobin=face.skin.hemoglobin._replace(model_skin=hemoglobin),
-        has_model_skin=torch.tensor(float(worn)),
+        has_model_skin=torch.tensor(float(applied)),
     )
     return face._replace(skin=skin)
 

@@ -1,4 +1,4 @@
-"""Scene parameters to photographs with the truth behind them."""
+"""Renders photographs and their ground truth from scene parameters."""
 
 from typing import NamedTuple
 
@@ -45,7 +45,7 @@ def render(scene: SceneParameters, decoder: SkinDecoder, split: str = "train") -
 
     Args:
         scene: A batch of scenes.
-        decoder: The skin's colours.
+        decoder: Computes the colours of skin.
         split: Train, val or test, each with its own cameras.
 
     Returns:
@@ -59,7 +59,7 @@ def render(scene: SceneParameters, decoder: SkinDecoder, split: str = "train") -
     normal = normalise(decode_normals(head.normal) + skin * F.pad(charts.bump, (0, 0, 0, 0, 0, 1)))
     shading = shade(
         scene.light,
-        scene.face.skin.gloss,
+        scene.face.skin.specular,
         normal,
         decode_sky_visibility(head.sky_visibility),
         head.visibility_mask,
@@ -80,14 +80,14 @@ def render(scene: SceneParameters, decoder: SkinDecoder, split: str = "train") -
 def develop(
     camera: CameraParameters, skin: VisibleSkin, rest: Image, white: Image, capture: Capture
 ) -> Batch:
-    """Photograph skin and what is beside it, and put the truth together.
+    """Photograph skin and everything else, and assemble the ground truth.
 
     Args:
         camera: Exposure and all that follows the sensor.
         skin: Skin and its light.
         rest: Linear light of all that is not skin.
         white: Linear sRGB of a white diffuser, [batch, 3, 1, 1].
-        capture: Light and camera, handed on.
+        capture: Light and camera, returned unchanged.
 
     Returns:
         Photographs, masks, true maps, captures and albedo.
@@ -108,7 +108,7 @@ def develop(
 
 
 def decode_normals(normal: Int8[Tensor, "batch height width 3"]) -> Image:
-    """Turn the normals of buffers into unit vectors; the background's look to the camera."""
+    """Turn the normals of buffers into unit vectors; the background's point to the camera."""
     return normalise(normal.movedim(-1, 1).float() + 1e-3)
 
 

@@ -1,4 +1,4 @@
-"""Everything that the synthetic renderer needs to know of one picture, or of a batch.
+"""Parameters of the synthetic renderer for one picture, or for a batch of pictures.
 
 All values are tensors. A sample has no batch axis; torch's default collate puts one in front.
 """
@@ -27,7 +27,7 @@ class HeadBuffers(NamedTuple):
     it) times 127. `chart` is the place on the label's chart. `sky_visibility` is the share of the
     cosine-weighted sky that nothing hides, times 255. Bit k of `visibility_mask` is set where
     nothing stands between the surface and `LIGHT_DIRECTIONS[k]`; it is not set where the surface
-    looks away. All bits of the background are set.
+    faces away from it. All bits of the background are set.
     """
 
     label: UInt8[Tensor, "*batch height width"]
@@ -53,7 +53,7 @@ class PigmentParameters(NamedTuple):
     model_skin: Float[Tensor, "*batch 1 rows columns"]
 
 
-class GlossParameters(NamedTuple):
+class SpecularParameters(NamedTuple):
     """How much oil lies on the skin, relative to a median face, and the roughness of its lobe."""
 
     oil: Float[Tensor, "*batch"]
@@ -64,14 +64,14 @@ class SkinParameters(NamedTuple):
     """The skin itself.
 
     `has_model_skin` is 1 where the pigments include a skin of a hybrid model, otherwise 0. `bump`
-    holds the slopes of the skin's relief to the right and upwards.
+    holds the gradients of the skin's relief to the right and upwards.
     """
 
     melanin: PigmentParameters
     hemoglobin: PigmentParameters
     has_model_skin: Float[Tensor, "*batch"]
     bump: Float[Tensor, "*batch 2 rows columns"]
-    gloss: GlossParameters
+    specular: SpecularParameters
 
 
 class MarkParameters(NamedTuple):
@@ -212,8 +212,8 @@ def map_tensors(function: Callable[[Tensor], Tensor], record: Record) -> Record:
 
     Example:
         >>> import torch
-        >>> gloss = GlossParameters(torch.tensor(1.0), torch.tensor(0.4))
-        >>> map_tensors(lambda value: 2 * value, gloss).oil
+        >>> specular = SpecularParameters(torch.tensor(1.0), torch.tensor(0.4))
+        >>> map_tensors(lambda value: 2 * value, specular).oil
         tensor(2.)
     """
     return record._make(

@@ -21,7 +21,7 @@ WHITE_BALANCE_SD = 0.03
 """Standard deviation of the log error of a camera's gains of red and of blue."""
 
 RANDOMISED_OIL = 0.35
-"""Mean logarithm of how much more oil lies on skin that is domain-randomised."""
+"""Mean logarithm of the factor on the oil of domain-randomised skin."""
 
 
 def sample_scene(
@@ -32,8 +32,9 @@ def sample_scene(
     Args:
         rng: Random numbers; the same state gives the same scene.
         head: Buffers of a square picture, without a batch axis.
-        domain_randomised: Widens the range of skin for training: melanin up to a fraction of .33
-            instead of .25, and oil times the exponential of an exponential variate of mean .35.
+        domain_randomised: Whether to widen the range of skin for training: melanin up to a fraction
+            of .33 instead of .25, and oil times the exponential of an exponential variate of mean
+            .35.
 
     Returns:
         Parameters in float32.
@@ -53,8 +54,8 @@ def sample_scene(
 
 
 def _add_oil(face: FaceParameters, factor: float) -> FaceParameters:
-    gloss = face.skin.gloss._replace(oil=face.skin.gloss.oil * factor)
-    return face._replace(skin=face.skin._replace(gloss=gloss))
+    specular = face.skin.specular._replace(oil=face.skin.specular.oil * factor)
+    return face._replace(skin=face.skin._replace(specular=specular))
 
 
 def _sample_surroundings(rng: np.random.Generator) -> SurroundingsParameters:

@@ -7,7 +7,7 @@ from jaxtyping import Float, Int
 from torch import Tensor
 
 from train.synthetic.directions import LIGHT_DIRECTIONS
-from train.synthetic.scene import GlossParameters, LightParameters
+from train.synthetic.scene import LightParameters, SpecularParameters
 from train.synthetic.tensors import expand_scalar
 
 _NEAREST = 5
@@ -28,7 +28,7 @@ class Shading(NamedTuple):
 
 def shade(
     light: LightParameters,
-    gloss: GlossParameters,
+    specular: SpecularParameters,
     normal: Float[Tensor, "batch 3 height width"],
     sky_visibility: Map,
     visibility_mask: Int[Tensor, "batch height width"],
@@ -38,7 +38,7 @@ def shade(
 
     Args:
         light: Sky and lamps.
-        gloss: Oil and roughness of each picture's skin.
+        specular: Oil and roughness of each picture's skin.
         normal: Unit normals in the camera's axes.
         sky_visibility: Share of the sky that nothing hides, in [0, 1].
         visibility_mask: A bit for each of `LIGHT_DIRECTIONS`, as in `HeadBuffers`.
@@ -52,7 +52,7 @@ def shade(
     """
     sky = _shade_sky(light.sky, normal).clamp_min(0.03) * sky_visibility
     diffuse, lobes = sky, torch.zeros_like(sky)
-    sharpness = expand_scalar(2 / gloss.roughness**4 - 2)
+    sharpness = expand_scalar(2 / specular.roughness**4 - 2)
     for lamp, strength, softness in zip(
         light.lamps.unbind(1), light.strength.unbind(1), light.softness.unbind(1), strict=True
     ):
@@ -61,9 +61,9 @@ def shade(
         irradiance = expand_scalar(strength) * cosine * visibility
         diffuse = diffuse + irradiance
         lobes = lobes + irradiance * _evaluate_lobe(lamp, normal, sharpness)
-    # The rough share of the surface sends the light of all directions to the camera.
-    specular = (lobes + _reflect_at_rim(normal) * diffuse) * expand_scalar(gloss.oil) * oil
-    return Shading(diffuse, specular)
+    # A rough surface also reflects light from all other directions to the camera.
+    lobes = lobes + _reflect_at_rim(normal) * diffuse
+    return Shading(diffuse, lobes * expand_scalar(specular.oil) * oil)
 
 
 def find_lamp_visibility(
@@ -71,7 +71,7 @@ def find_lamp_visibility(
     lamp: Float[Tensor, "batch 3"],
     softness: Float[Tensor, "batch"],
 ) -> Map:
-    """Find the share of a lamp that each pixel sees.
+    """Find the share of a lamp that is visible from each pixel.
 
     Args:
         visibility_mask: A bit for each of `LIGHT_DIRECTIONS`.

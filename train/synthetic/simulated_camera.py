@@ -40,12 +40,12 @@ def select_sensors(split: str) -> tuple[int, ...]:
 def simulate_sensor(
     light: LightParameters, camera: CameraParameters, model: SpectralCamera, split: str
 ) -> tuple[Float[Tensor, "batch wavelength 3"], Capture]:
-    """Put measured sensors under lights.
+    """Compute the colour matrices of measured sensors under sampled lights.
 
     Args:
         light: Spectrum of each picture's light.
         camera: Sensor and white balance of each picture.
-        model: Statistical model of cameras, in whose terms the capture is described.
+        model: Statistical model of cameras, whose basis describes the sensor of a capture.
         split: Train, val or test.
 
     Returns:

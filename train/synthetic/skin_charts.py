@@ -17,18 +17,18 @@ Charts = Float[np.ndarray, "*samples rows columns"]
 PigmentCharts = Float[np.ndarray, "pigments rows columns"]
 
 DAMPING = 0.7
-"""Share of the broad changes, and of the mean face's own structure, that is taken away. Shading of
-portraits is read as pigment, and lies in the same places in all of them."""
+"""Share of the broad changes, and of the mean face's own structure, that is removed. The shading
+of portraits is read as pigment, and it lies in the same places in all of them."""
 
 _FADING = 14
 """Texels of the chart over which a skin fades towards the border of its model."""
 
 _FILL_SCALES = ((3.0, 1.0), (8.0, 0.02), (24.0, 4e-4))
-"""Widths in texels of the bells that fill gaps, and their weights: wider ones count where narrower
-ones reach nothing."""
+"""Standard deviations in texels of the Gaussians that fill gaps, and their weights. The wider ones
+matter only where the narrower ones do not reach."""
 
 _BROAD = 24.0
-"""Standard deviation in texels, a third of the face's width, of what is taken for shading."""
+"""Standard deviation in texels of the blur that separates shading: a third of the face's width."""
 
 _MAX_LOG_FACTOR = 0.8
 """Largest log factor, approached smoothly."""
@@ -100,7 +100,7 @@ def fill_gaps(values: Charts, weight: Chart, source: Chart) -> Charts:
 
 
 def _blur(values: Charts, weight: Chart, width: float) -> Charts:
-    """Weighted means under a bell of that width in texels."""
+    """Weighted means under a Gaussian of that standard deviation in texels."""
     total = np.maximum(_convolve(weight.astype(float), width), 1e-6)
     return np.asarray(_convolve(values * weight, width) / total)
 

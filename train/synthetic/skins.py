@@ -1,4 +1,4 @@
-"""Skins of a hybrid model, as charts that synthetic faces wear.
+"""Samples skins of a hybrid model as charts for synthetic faces.
 
 `python -m train.synthetic.skins skinmodel/hybrid.npz -o skins.npz` samples them from a model that
 `skinnet maps` and `skinnet build-model` made in the procedural face's texture space.
@@ -40,8 +40,8 @@ _TEXELS = 256
 """Side in texels to which a model's maps are averaged, about twice as dense as the chart."""
 
 _FLOOR = 0.5
-"""Share of the mean face's pigment that is added before logarithms are taken. Without it a sampled
-face with hardly any pigment would consist of contrast alone."""
+"""Share of the mean face's pigment that is added before logarithms are taken. Without it
+a sampled face with hardly any pigment would have extreme log factors."""
 
 
 def sample_model_skins(
@@ -111,7 +111,8 @@ def find_procedural_places(own_uv: bool = False) -> ChartPlaces:
     """Find the chart's texels in the texture space of the procedural face.
 
     Args:
-        own_uv: Takes the chart itself for texture space, not the embedding of `skinnet maps`.
+        own_uv: Whether the texture space is the chart itself instead of the embedding of
+            `skinnet maps`.
 
     Returns:
         Their texture coordinates.
@@ -129,7 +130,7 @@ def main(argv: Sequence[str] | None = None) -> int:
     """Sample skins from a model of the procedural face.
 
     Args:
-        argv: Words of the command; None takes those of the process.
+        argv: Arguments of the command; None means those of the process.
 
     Returns:
         The exit code, 2 for bad input.

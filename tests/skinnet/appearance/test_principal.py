@@ -57,7 +57,7 @@ def test_a_memmap_is_read_block_by_block(tmp_path: Path, monkeypatch: pytest.Mon
     assert np.array_equal(fit(mapped).basis, fit(rows(), width=5).basis)
 
 
-def test_inner_products_are_gathered_channel_by_channel() -> None:
+def test_inner_products_are_summed_over_channels() -> None:
     grams = compute_grams(ArrayBlocks(rows(), 2, 7))
     centred = rows().astype(np.float64) - rows().mean(0, dtype=np.float64)
     halves = np.split(centred, 2, axis=1)
@@ -96,7 +96,7 @@ def test_components_that_the_subjects_do_not_span_are_refused(asked: int) -> Non
         fit(rows(), asked)
 
 
-def test_a_subject_that_is_there_twice_spans_nothing() -> None:
+def test_a_repeated_subject_adds_no_component() -> None:
     twice = rows()[[0, 1, 2, 3, 4, 4]]
     assert len(fit(twice).variances) == 4
     with pytest.raises(InputError, match="6 subjects span 4; ask for 1 to 4"):

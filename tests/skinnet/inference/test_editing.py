@@ -10,7 +10,7 @@ def test_gain_is_exactly_one_where_nothing_changes() -> None:
     assert (compute_gain(colours, colours, np.zeros((6, 5), np.float32)) == 1).all()
 
 
-def test_gloss_is_not_tinted() -> None:
+def test_specular_reflection_is_not_tinted() -> None:
     crop = np.full((8, 8, 3), 200, np.uint8)
     ones = np.ones((4, 4), np.float32)
     gain = np.full((4, 4, 3), 0.5, np.float32)

@@ -16,7 +16,7 @@ def search_all(corners: np.ndarray, points: np.ndarray) -> np.ndarray:
 
 
 @given(st.integers(0, 10**6), st.sampled_from([1, 3, 4, 5, 40, 130]))
-def test_closest_points_are_those_of_looking_at_every_triangle(seed: int, count: int) -> None:
+def test_closest_points_agree_with_an_exhaustive_search(seed: int, count: int) -> None:
     rng = np.random.default_rng(seed)
     # Triangles from a thousandth to ten, long ones and some that are points or lines.
     vertices = rng.normal(size=(60, 3)) * 10 ** rng.uniform(-3, 1, (60, 1))

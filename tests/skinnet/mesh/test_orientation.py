@@ -57,7 +57,7 @@ def test_components_of_faces_need_a_common_edge() -> None:
     assert label[0] == label[1] != label[2]
 
 
-def test_adjacent_faces_tell_whether_they_agree() -> None:
+def test_adjacent_faces_are_compared_in_orientation() -> None:
     agree = pair_adjacent_faces(np.array([[0, 1, 2], [1, 3, 2]]))
     disagree = pair_adjacent_faces(np.array([[0, 1, 2], [1, 2, 3]]))
     assert (agree.first.tolist(), agree.second.tolist()) == ([0], [1])

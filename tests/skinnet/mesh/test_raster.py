@@ -15,7 +15,7 @@ def centres(size: int) -> np.ndarray:
 
 
 def search_all(corners: np.ndarray, size: int) -> np.ndarray:
-    """The first triangle that holds each texel's centre, by looking at all of them."""
+    """The first triangle that holds each texel's centre, by exhaustive search."""
     found = np.full((size, size), -1)
     for number in reversed(range(len(corners))):
         a, b, c = corners[number]
@@ -29,7 +29,7 @@ def search_all(corners: np.ndarray, size: int) -> np.ndarray:
 
 
 @given(st.integers(0, 10**6), st.integers(1, 40))
-def test_raster_is_that_of_looking_at_every_triangle(seed: int, size: int) -> None:
+def test_the_raster_agrees_with_an_exhaustive_search(seed: int, size: int) -> None:
     rng = np.random.default_rng(seed)
     scale = 10 ** rng.uniform(-2, 0.5, (30, 1, 1))
     corners = rng.uniform(-0.3, 1.3, (30, 1, 2)) + scale * rng.normal(size=(30, 3, 2))

@@ -84,7 +84,7 @@ def test_without_skin_the_offset_is_the_photograph() -> None:
     assert not gradient.any()  # or the best explanation would be no skin at all
 
 
-def test_the_vote_on_the_tint_reaches_the_white_balance_directly(model: SkinAutoencoder) -> None:
+def test_the_tint_of_the_voting_reaches_the_white_balance_directly(model: SkinAutoencoder) -> None:
     model, photograph = deepcopy(model), torch.rand(1, 3, 24, 20)
     with torch.no_grad():
         model.encoder.refine[-1].weight.zero_()  # the indirect path

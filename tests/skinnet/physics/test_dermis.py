@@ -63,14 +63,14 @@ def test_no_layer_overflows(dtype: torch.dtype) -> None:
 
 
 @pytest.mark.parametrize("x2", [0.0, 5e-5, 2e-4, 1.0, 50.0])
-def test_x_coth_x_has_its_value_and_slopes(x2: float) -> None:
+def test_x_coth_x_has_its_value_and_derivatives(x2: float) -> None:
     expected = 1.0 if x2 == 0 else x2**0.5 / np.tanh(x2**0.5)
     assert _x_coth_x(tensor(x2)).item() == pytest.approx(expected, abs=1e-14)
     assert torch.autograd.gradcheck(_x_coth_x, tensor(x2).requires_grad_())
     assert torch.autograd.gradgradcheck(_x_coth_x, tensor(x2).requires_grad_())
 
 
-def test_x_coth_x_slopes_by_one_third_at_zero() -> None:
+def test_x_coth_x_has_derivative_one_third_at_zero() -> None:
     x2 = tensor(0.0).requires_grad_()
     (slope,) = torch.autograd.grad(_x_coth_x(x2).sum(), x2)
     assert slope.item() == pytest.approx(1 / 3)

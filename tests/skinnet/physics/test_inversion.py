@@ -102,9 +102,9 @@ def test_an_offset_inside_the_range_is_normal_to_the_surface() -> None:
     assert inner.sum() > 100
     f = torch.stack([found.f_mel, found.f_blood])[:, inner].requires_grad_()
     model = LOOKUP.reflectance.bands(*f) @ MATRIX
-    slopes = [torch.autograd.grad(c.sum(), f, retain_graph=True)[0] for c in model.unbind(-1)]
-    slope = torch.stack(slopes, -1)
-    along = (slope * found.offset[inner]).sum(-1) / slope.norm(dim=-1)
+    gradients = [torch.autograd.grad(c.sum(), f, retain_graph=True)[0] for c in model.unbind(-1)]
+    gradient = torch.stack(gradients, -1)
+    along = (gradient * found.offset[inner]).sum(-1) / gradient.norm(dim=-1)
     assert along.abs().max() < 1e-5
 
 

@@ -87,7 +87,7 @@ def test_constant_has_a_gradient_where_it_is_zero(name: str) -> None:
     )
 
 
-def test_calibrated_is_paper_with_packed_blood_and_the_default() -> None:
+def test_calibrated_is_paper_with_pigment_packaging_and_the_default() -> None:
     for item in fields(SkinOptics):
         ours, theirs = (getattr(PRESETS[name], item.name) for name in ("calibrated", "paper"))
         same = torch.equal(ours, theirs) if isinstance(ours, torch.Tensor) else ours == theirs

@@ -78,7 +78,7 @@ def test_blood_shows_its_two_valleys_of_oxyhemoglobin() -> None:
     assert at[540] < at[560] > at[580] and at[580] < at[600]
 
 
-def test_packed_vessels_hide_blood() -> None:
+def test_pigment_packaging_lowers_the_absorption_of_blood() -> None:
     paper, calibrated = (SkinReflectance(name)(0.02, 0.05) for name in ("paper", "calibrated"))
     assert (calibrated > paper).all()
 
@@ -147,14 +147,14 @@ def tensor(value: float) -> torch.Tensor:
 
 
 @pytest.mark.parametrize("x", [0.0, 5e-5, 2e-4, 1.0, 50.0])
-def test_pigment_packaging_has_its_value_and_slopes(x: float) -> None:
+def test_pigment_packaging_has_its_value_and_derivatives(x: float) -> None:
     expected = 1.0 if x == 0 else -np.expm1(-x) / x
     assert _pigment_packaging(tensor(x)).item() == pytest.approx(expected, abs=1e-13)
     assert torch.autograd.gradcheck(_pigment_packaging, tensor(x).requires_grad_())
     assert torch.autograd.gradgradcheck(_pigment_packaging, tensor(x).requires_grad_())
 
 
-def test_pigment_packaging_slopes_by_minus_one_half_at_zero() -> None:
+def test_pigment_packaging_has_derivative_minus_one_half_at_zero() -> None:
     x = tensor(0.0).requires_grad_()
     (slope,) = torch.autograd.grad(_pigment_packaging(x).sum(), x)
     assert slope.item() == pytest.approx(-0.5)

@@ -60,7 +60,7 @@ def test_training_alone_sees_the_darkest_and_shiniest_skin(casts: Path) -> None:
     assert melanin.min() < 0.02
     assert MELANIN_RANGE[1] < melanin.max() <= RANDOMISED_MELANIN_RANGE[1]
     assert max(skin.melanin.fraction for skin in kept) <= MELANIN_RANGE[1]
-    oily, usual = (np.mean([skin.gloss.oil for skin in some]) for some in (trained, kept))
+    oily, usual = (np.mean([skin.specular.oil for skin in some]) for some in (trained, kept))
     assert oily > 1.2 * usual
 
 

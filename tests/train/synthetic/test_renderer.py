@@ -98,7 +98,7 @@ def test_a_mirror_image_has_the_mirrored_truth(
         assert torch.equal(a.flip(-1), b)
 
 
-def test_the_losses_know_the_spread_of_skin_and_its_light(data: SyntheticFaces) -> None:
+def test_the_losses_have_the_spread_of_skin_and_light(data: SyntheticFaces) -> None:
     scenes = SyntheticScenes(data.buffers["train"], "train", 96, seed=0)
     batch = default_collate([scenes[index] for index in range(96)])
     truth = data.render(batch, "train").truth

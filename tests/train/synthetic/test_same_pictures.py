@@ -14,7 +14,7 @@ TEST = (0.29194102, 0.03692688, 0.02704669, 0.04756396, 0.00177844, 0.2123137, 0
 
 
 def describe(batch: Batch) -> Iterator[float]:
-    """Means that change if any draw or any step of the renderer changes."""
+    """Means that change if any sampled value or any step of the renderer changes."""
     assert batch.truth is not None and batch.capture is not None
     weight = torch.linspace(0, 1, 32)
     for value in (batch.photograph, *batch.truth[:5]):

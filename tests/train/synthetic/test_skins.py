@@ -61,7 +61,7 @@ def skins(model: HybridModel, place: np.ndarray) -> ModelSkins:
     return sample_model_skins(model, place, 3, seed=1)
 
 
-def take_off(face: FaceParameters) -> FaceParameters:
+def remove_model_skin(face: FaceParameters) -> FaceParameters:
     """The face without its skin of a model."""
     bare = {
         name: pigment._replace(model_skin=torch.zeros_like(pigment.model_skin))
@@ -166,28 +166,28 @@ def test_gaps_are_filled_from_around_and_lips_are_kept() -> None:
     assert np.abs(fill_gaps(values, sure, sure) - 0.3).max() < 1e-9
 
 
-def test_half_wear_a_skin_and_nothing_else_changes(skins: ModelSkins) -> None:
-    wearing, plain = sample_faces(40, skins), sample_faces(40, None)
-    worn = np.array([face.skin.has_model_skin.item() for face in wearing])
-    assert 10 < worn.sum() < 30 and set(worn) == {0, 1}
-    for one, other, wears in zip(wearing, plain, worn, strict=True):
+def test_half_of_the_faces_get_a_skin_and_nothing_else_changes(skins: ModelSkins) -> None:
+    changed, plain = sample_faces(40, skins), sample_faces(40, None)
+    applied = np.array([face.skin.has_model_skin.item() for face in changed])
+    assert 10 < applied.sum() < 30 and set(applied) == {0, 1}
+    for one, other, has_skin in zip(changed, plain, applied, strict=True):
         compared = []
         for face in (one, other):
             for chart in (face.skin.melanin.model_skin, face.skin.hemoglobin.model_skin):
                 assert chart.shape == (1, *CHART_SIZE) and chart.dtype == torch.float32
-                assert chart.any() == (wears and face is one)
-            compared.append(list_tensors(take_off(face)))
+                assert chart.any() == (has_skin and face is one)
+            compared.append(list_tensors(remove_model_skin(face)))
         assert all(torch.equal(a, b) for a, b in zip(*compared, strict=True))
 
 
-def test_both_ways_round_are_worn(skins: ModelSkins) -> None:
+def test_skins_are_applied_as_they_are_and_mirrored(skins: ModelSkins) -> None:
     row, column = texel(0.4, 0.5)
-    worn = [face.skin for face in sample_faces(40, skins) if face.skin.has_model_skin]
-    spots = [skin.melanin.model_skin[0, row] for skin in worn]
+    applied = [face.skin for face in sample_faces(40, skins) if face.skin.has_model_skin]
+    spots = [skin.melanin.model_skin[0, row] for skin in applied]
     assert {bool(spot[column] > spot[-1 - column]) for spot in spots} == {True, False}
 
 
-def test_worn_skins_are_painted() -> None:
+def test_skins_of_a_model_are_painted() -> None:
     face = sample_scene(np.random.default_rng(0), make_blank_cast(8).to_buffers()).face
     zero = {name: 0 * getattr(face.skin.melanin, name) for name in ("regions", *OCTAVES)}
     melanin, hemoglobin = (
@@ -200,11 +200,11 @@ def test_worn_skins_are_painted() -> None:
     skin = skin._replace(
         hemoglobin=hemoglobin._replace(model_skin=chart), has_model_skin=torch.tensor(1.0)
     )
-    worn_face = plain_face._replace(skin=skin)
-    plain, worn = (paint_face(default_collate([one])) for one in (plain_face, worn_face))
-    ratio = worn.hemoglobin / plain.hemoglobin
+    changed_face = plain_face._replace(skin=skin)
+    plain, changed = (paint_face(default_collate([one])) for one in (plain_face, changed_face))
+    ratio = changed.hemoglobin / plain.hemoglobin
     torch.testing.assert_close(ratio, torch.full_like(ratio, float(np.exp(0.2))))
-    torch.testing.assert_close(worn.melanin, plain.melanin)
+    torch.testing.assert_close(changed.melanin, plain.melanin)
 
 
 def test_the_command_writes_what_synthetic_faces_read(model: HybridModel, tmp_path: Path) -> None:
