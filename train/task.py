@@ -117,7 +117,7 @@ class SkinTask(LightningModule):
             self.model.load_state_dict(start.state_dict())
         except RuntimeError as error:
             raise InputError(
-                f"{path} holds weights whose shapes do not fit this configuration; give the widths "
+                f"{path} holds weights of another shape than this configuration; give the widths "
                 "that they were trained with."
             ) from error
         return start.trained_on
