@@ -20,7 +20,7 @@ from skimage.data import astronaut
 
 from benchmarks.biofacenet import BioFaceNetShape
 from benchmarks.report import main
-from export.onnx_file import quiet
+from export.onnx_file import _silence_exporter
 from skinnet.inference import SHIPPED_ENCODER
 
 RUNS = {256: 4, 512: 2}
@@ -55,7 +55,7 @@ def export_rival(path: Path) -> None:
     """Write the BioFaceNet-shaped network as ONNX, with free height and width."""
     torch.manual_seed(0)
     size = {2: torch.export.Dim("h") * 16, 3: torch.export.Dim("w") * 16}
-    with quiet():
+    with _silence_exporter():
         program = torch.onnx.export(
             BioFaceNetShape().eval(),
             (torch.rand(1, 3, 256, 256),),

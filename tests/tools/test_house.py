@@ -1,4 +1,4 @@
-"""The house is as its plan says."""
+"""The structure of the package stays within its limits."""
 
 import json
 
@@ -7,7 +7,7 @@ import pytest
 from tools.house import PACKAGE, ROOT, main, measure, read_floors
 
 
-def test_the_house_keeps_its_plan() -> None:
+def test_the_structure_stays_within_its_limits() -> None:
     found = measure(ROOT / PACKAGE, read_floors())
     assert found["entries"] <= 16
     assert found["public_definitions"] <= 150
