@@ -8,6 +8,7 @@ from collections.abc import Iterator
 from pathlib import Path
 from typing import Any, NoReturn
 
+import numpy as np
 import pytest
 
 from tools.house import ROOT, list_definitions, read
@@ -54,7 +55,8 @@ def test_examples_print_what_they_say(room: str, tmp_path: Path, monkeypatch: An
         found = getattr(importlib.import_module(f"skinnet.{room}"), name)
         for test in doctest.DocTestFinder().find(found, name):
             examples += len(test.examples)
-            with warnings.catch_warnings():
+            # Another test may import colour-science, which changes how NumPy prints arrays.
+            with warnings.catch_warnings(), np.printoptions(legacy=False):
                 runner.run(test)
     assert runner.failures == 0 and examples > 0
 
