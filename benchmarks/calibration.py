@@ -131,7 +131,7 @@ def attempt(
     return Trial(error, found.uncertainty, seconds)
 
 
-def known_trials(cover: str, noise: float, seeds: int, count: int) -> Iterator[Trial]:
+def known_trials(cover: str, noise: float, seeds: int, count: int = COLOURS) -> Iterator[Trial]:
     """Trials of both transforms."""
     for transform in (MIX, BRIGHT):
         for seed in range(seeds):

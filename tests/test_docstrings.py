@@ -47,6 +47,7 @@ def test_arguments_and_results_are_described(room: str, name: str) -> None:
             assert "Returns:" in text or "Yields:" in text, f"{path} does not say what it returns"
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("room", ROOMS)
 def test_examples_print_what_they_say(room: str, tmp_path: Path, monkeypatch: Any) -> None:
     monkeypatch.chdir(tmp_path)

@@ -11,6 +11,8 @@ from benchmarks.calibration import model_colours as make_model_colours
 from skinnet import InputError
 from skinnet.calibration import calibrate
 
+pytestmark = pytest.mark.slow
+
 Colours = Float[np.ndarray, "colours 3"]
 Model = Float[np.ndarray, "mel blood 3"]
 
@@ -45,16 +47,11 @@ def test_a_transform_comes_back_from_half_of_all_skin_within_the_claim_and_the_c
     assert found.converged
 
 
-@pytest.mark.slow
 def test_the_claim_covers_the_error_in_nine_of_ten_trials() -> None:
-    trials = [
-        trial
-        for cover in ("all", "paler", "darker")
-        for noise in (0.002, 0.005, 0.01)
-        for trial in known_trials(cover, noise, 2, 20_000)
-    ]
-    trials += crowd_trials(14, 100_000)
-    assert len(trials) == 50
+    # `python -m benchmarks.calibration` makes fifty.
+    trials = [one for cover in ("all", "paler", "darker") for one in known_trials(cover, 0.005, 1)]
+    trials += crowd_trials(4, 100_000)
+    assert len(trials) == 10
     assert np.mean([trial.error <= trial.uncertainty for trial in trials]) >= 0.9
 
 
