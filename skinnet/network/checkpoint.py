@@ -32,10 +32,10 @@ def read_checkpoint(path: str | Path) -> dict[str, Any]:
         >>> read_checkpoint("absent.ckpt")
         Traceback (most recent call last):
         ...
-        skinnet.errors.InputError: absent.ckpt is not a checkpoint file; give one, such as RUN/best.ckpt.
+        skinnet.errors.InputError: There is no checkpoint absent.ckpt; give RUN/best.ckpt or RUN/last.ckpt.
     """  # noqa: E501 - a message of one line
     if not Path(path).is_file():
-        raise InputError(f"{path} is not a checkpoint file; give one, such as RUN/best.ckpt.")
+        raise InputError(f"There is no checkpoint {path}; give RUN/best.ckpt or RUN/last.ckpt.")
     try:
         checkpoint = torch.load(path, map_location="cpu", weights_only=True)
     except (RuntimeError, EOFError, pickle.UnpicklingError, OSError, ValueError) as error:

@@ -121,7 +121,7 @@ def test_a_missing_checkpoint_is_an_error(
 ) -> None:
     for path in (str(tmp_path / "absent.ckpt"), "last"):
         assert fit(tmp_path / "run", f"--ckpt_path={path}") == 2
-        assert f"{path} is not a checkpoint file" in capsys.readouterr().err
+        assert f"There is no checkpoint {path}" in capsys.readouterr().err
     assert not (tmp_path / "run").exists()
 
 
