@@ -30,7 +30,7 @@ class NearestColour:
 
     The answer is that of an exhaustive search, for any grid and any colour; a tie within the
     rounding of float64 may go to either node. On the texture of a whole face it is about nine times
-    as fast as scipy's cKDTree with two workers, on bare skin three times: `python -m
+    as fast as scipy's cKDTree with two workers, on bare skin about twice: `python -m
     benchmarks.lookup` measures both.
 
     Args:
