@@ -22,6 +22,7 @@ from benchmarks.report import Results
 from benchmarks.running_statistics import RunningStatistics
 from benchmarks.typology import GROUPS, compute_typology_angle, find_group
 from skinnet.images import find_face, frame_head, read_photo, resize, segment_skin, srgb_to_linear
+from skinnet.images.srgb import LUMINANCE_WEIGHTS
 from skinnet.network.autoencoder import SkinMaps
 from skinnet.physics import SkinDecoder
 
@@ -225,5 +226,5 @@ def compute_wall_angles(some: Sequence[Portrait]) -> torch.Tensor:
     The light of each portrait is divided by that of its wall; the median luminance of walls stays.
     """
     walls, colours = (np.stack([getattr(one, name) for one in some]) for name in ("wall", "colour"))
-    grey = np.median(walls @ [0.2126, 0.7152, 0.0722])
+    grey = np.median(walls @ LUMINANCE_WEIGHTS)
     return compute_typology_angle(torch.from_numpy(colours / walls * grey))

@@ -21,11 +21,12 @@ from skinnet.network.encoder import WIDTHS, SkinEncoder
 from skinnet.physics.camera import CAMERA_COMPONENTS, LIGHTS
 from skinnet.physics.capture import Capture
 from skinnet.physics.decoder import SkinDecoder
+from skinnet.physics.inversion import F_BLOOD_RANGE, F_MEL_RANGE
 
-F_MEL_MAX = 0.43
+F_MEL_MAX = F_MEL_RANGE[1]
 """Largest melanosome volume fraction (Table 1 of Alotaibi & Smith 2017)."""
 
-F_BLOOD_MAX = 0.15
+F_BLOOD_MAX = F_BLOOD_RANGE[1]
 """About twice the paper's 7 %: lips and flushed cheeks hold more blood than other skin."""
 
 SHADING_MAX = 4.0

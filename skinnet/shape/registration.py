@@ -13,6 +13,7 @@ from skinnet.shape._moments import compute_moments
 from skinnet.shape._scan_points import ScanPoints
 from skinnet.shape._separable import SeparableObjective, minimise
 from skinnet.shape.fit_settings import FitSettings, StageRecord
+from skinnet.shape.landmarks import MIN_COUNT
 from skinnet.shape.model import ShapeModel
 from skinnet.shape.similarity import Similarity, fit_similarity
 
@@ -144,9 +145,10 @@ def _fit_to_landmarks(
     Section 4.1 of Alotaibi & Smith 2017 starts from 20 landmarks.
     """
     names = sorted(set(landmarks) & set(model.landmarks))
-    if len(names) < 4:
+    if len(names) < MIN_COUNT:
         raise InputError(
-            f"The scan and {model.name} have {len(names)} landmarks in common, and need four, of "
+            f"The scan and {model.name} have {len(names)} landmarks in common, and need "
+            f"{MIN_COUNT}, of "
             f"{', '.join(sorted(model.landmarks)) or 'none: the model has no landmarks'}."
         )
     vertices = [model.landmarks[name] for name in names]
