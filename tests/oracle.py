@@ -29,6 +29,23 @@ PAPER: Mapping[str, float] = MappingProxyType(
         "d_epd": 0.021,
         "d_pd": 0.2,
         "r": 0.0,
+        "floor": 0.244,
+        "scale": 85.3,
+        "mie": 2e5,
+        "rayleigh": 2e12,
+    }
+)
+
+MEASURED: Mapping[str, float] = MappingProxyType(
+    {
+        "f_oxy": 0.685,
+        "d_epd": 0.014,
+        "r": 5.9e-4,
+        "r_melanin": 5.3e-4,
+        "floor": 0.192,
+        "scale": 67.2,
+        "mie": 2.56e5,
+        "rayleigh": 2.34e12,
     }
 )
 
@@ -61,9 +78,9 @@ def baseline(floor: float = 0.244, scale: float = 85.3) -> Array:
     return floor + scale * np.exp(-(WAVELENGTHS - 154) / 66.2)
 
 
-def scattering() -> Array:
+def scattering(mie: float = 2e5, rayleigh: float = 2e12) -> Array:
     """Return the reduced scattering of the dermis, Mie and Rayleigh."""
-    return 2e5 * WAVELENGTHS**-1.5 + 2e12 * WAVELENGTHS**-4
+    return mie * WAVELENGTHS**-1.5 + rayleigh * WAVELENGTHS**-4
 
 
 def kubelka_munk(k: Array, s: Array, d: float, printed: bool = False) -> Array:
@@ -85,17 +102,22 @@ def reflectance(preset: str, f_mel: ArrayLike, f_blood: ArrayLike, **constants: 
         "authors": {"g": 66500.0, "d_epd": 0.02, "d_pd": 0.3},
         "paper": {},
         "calibrated": {"r": 20e-4},
+        "measured": MEASURED,
     }[preset]
     c = {**PAPER, **own, **constants}
-    base = baseline(0.0244, 8.53) if preset == "authors" else baseline()
+    base = baseline(0.0244, 8.53) if preset == "authors" else baseline(c["floor"], c["scale"])
     absorbed = _epidermis(preset, mel, blood, base, c)
     k = blood * _blood(c) + (1 - blood) * base
-    return np.exp(-2 * absorbed) * kubelka_munk(k, scattering(), c["d_pd"], preset == "printed")
+    s = scattering(c["mie"], c["rayleigh"])
+    return np.exp(-2 * absorbed) * kubelka_munk(k, s, c["d_pd"], preset == "printed")
 
 
 def _epidermis(preset: str, mel: Array, blood: Array, base: Array, c: Mapping[str, float]) -> Array:
     if preset == "printed":
         return mel * _melanin(6.6e11, -3.33, 2.9e10, -4.75, c) * c["d_epd"] + (1 - mel) * base
+    if preset == "measured":
+        mu_mel = pack_pigment(6.6e11 * WAVELENGTHS**-3.33, c["r_melanin"])
+        return c["d_epd"] * (mel * mu_mel + (1 - mel) * base)
     tables = columns("melanin")
     mu_mel = c["f_eum"] * tables["eumelanin"] * c["c_eum"]
     mu_mel = mu_mel + (1 - c["f_eum"]) * tables["pheomelanin"] * c["c_phm"]

@@ -87,7 +87,7 @@ class SkinTask(LightningModule):
 
     def __init__(
         self,
-        optics: str = "calibrated",
+        optics: str = "measured",
         widths: list[PositiveInt] = list(AutoencoderConfig.widths),  # noqa: B006 - never written
         working_size: PositiveInt = 128,
         losses: LossWeights = LossWeights(),  # noqa: B008 - never written

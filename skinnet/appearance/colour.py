@@ -52,7 +52,7 @@ class SkinColour(nn.Module):
         self,
         matrix: Float[np.ndarray, "wavelength 3"] | None = None,
         calibration: Float[np.ndarray, "3 3"] | None = None,
-        optics: str = "calibrated",
+        optics: str = "measured",
         nodes: tuple[int, int] = _NODES,
         light: str = "D65",
         camera: str = "mean",

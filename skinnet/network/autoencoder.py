@@ -129,7 +129,7 @@ class AutoencoderConfig:
         working_size: Longer side, in pixels, of the crops that the weights are trained on.
     """
 
-    optics: str = "calibrated"
+    optics: str = "measured"
     widths: tuple[int, ...] = WIDTHS
     working_size: int = 128
 

@@ -12,8 +12,10 @@ from .inversion import Inversion as Inversion
 from .inversion import SkinInverse as SkinInverse
 from .lookup import SkinLookup as SkinLookup
 from .nearest_colour import NearestColour as NearestColour
+from .nuisance import Nuisance as Nuisance
 from .optics import PRESETS as PRESETS
 from .optics import SkinOptics as SkinOptics
+from .prior import SkinPrior as SkinPrior
 from .reflectance import SkinReflectance as SkinReflectance
 from .sources import load_camera as load_camera
 from .sources import load_light as load_light
@@ -21,6 +23,8 @@ from .sources import load_spectrum_to_srgb as load_spectrum_to_srgb
 from .spectra import WAVELENGTHS as WAVELENGTHS
 from .spectra import load_cameras as load_cameras
 from .spectra import load_observer as load_observer
+from .specular import R_SURFACE as R_SURFACE
+from .specular import include_specular as include_specular
 from .srgb import luminance as luminance
 from .srgb import srgb_to_xyz as srgb_to_xyz
 from .srgb import to_display as to_display
@@ -31,17 +35,21 @@ __all__ = [
     "F_MEL_RANGE",
     "LIGHTS",
     "PRESETS",
+    "R_SURFACE",
     "WAVELENGTHS",
     "Capture",
     "Inversion",
     "NearestColour",
+    "Nuisance",
     "SkinDecoder",
     "SkinInverse",
     "SkinLookup",
     "SkinOptics",
+    "SkinPrior",
     "SkinReflectance",
     "SpectralCamera",
     "daylight",
+    "include_specular",
     "kubelka_munk",
     "load_camera",
     "load_cameras",

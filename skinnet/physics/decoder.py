@@ -43,7 +43,7 @@ class SkinDecoder(nn.Module):
 
     def __init__(
         self,
-        optics: SkinOptics | str = "calibrated",
+        optics: SkinOptics | str = "measured",
         camera: SpectralCamera | None = None,
         fast: bool = True,
         dtype: torch.dtype | None = None,

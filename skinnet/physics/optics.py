@@ -1,11 +1,13 @@
-"""The skin's optical constants, each with its unit, range and source, and the four presets."""
+"""The skin's optical constants, each with its unit, range and source, and the five presets."""
 
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field, fields, replace
+from functools import partial
 from types import MappingProxyType
 from typing import Any
 
 import torch
+from jaxtyping import Float
 from torch import Tensor
 
 from skinnet.errors import InputError
@@ -21,14 +23,25 @@ def _constant(value: Any, unit: str, low: float, high: float, source: str) -> An
     return field(default=value, metadata=note)
 
 
-def _spectrum(name: str, column: str, unit: str, source: str) -> Any:
+def _spectrum(values: Callable[[], Tensor], unit: str, source: str) -> Any:
     note = {"unit": unit, "range": (0.0, 1e7), "source": source}
-    return field(default_factory=lambda: read_table(name)[column], metadata=note)
+    return field(default_factory=values, metadata=note)
+
+
+def _read_column(table: str, column: str) -> Float[Tensor, "wavelength"]:
+    return read_table(table)[column]
+
+
+def _power_law(scale: float, power: float) -> Float[Tensor, "wavelength"]:
+    return scale * WAVELENGTHS**power
+
+
+_FITTED = "fitted to measured spectra, starting from the literature: "
 
 
 @dataclass(frozen=True, eq=False)
 class SkinOptics:
-    """Constants of the two-layer skin model; the defaults are the `calibrated` preset.
+    """Constants of the two-layer skin model; the defaults are the `measured` preset.
 
     Each constant is a float, a tensor, or an `nn.Parameter`, which makes it trainable in whatever
     module is built on it. The metadata of its field holds `unit`, `range` and `source`.
@@ -45,13 +58,15 @@ class SkinOptics:
         d_base: Path of the epidermis' baseline absorption, cm; None: `d_epd`. The printed equation
             has no such factor, which is the same as 1.
         r_vessel: Radius of blood vessels, cm; 0: no pigment packaging, as in the paper.
+        r_melanin: Radius of the packets that melanosomes form, cm; 0: no pigment packaging, as in
+            the paper.
         blood_epd: Blood in the epidermis, as a fraction of f_blood; not in the paper.
         base_floor: Constant of the baseline absorption, cm^-1 (Table 2).
         base_scale: Factor of the baseline absorption's exponential, cm^-1 (Table 2).
         mie: Factor of Mie scattering, cm^-1 nm^1.5 (Table 2).
         rayleigh: Factor of Rayleigh scattering, cm^-1 nm^4 (Table 2).
-        eps_eum: Extinction of eumelanin [33], L g^-1 cm^-1. Measured, instead of Table 2, whose
-            values make every skin black.
+        eps_eum: Extinction of eumelanin [33], L g^-1 cm^-1. Table 2 prints the absorption of a
+            melanosome's interior in its place, which makes every skin black.
         eps_phm: Extinction of pheomelanin [33], L g^-1 cm^-1. Measured, instead of Table 2.
         e_oxy: Molar extinction of oxyhemoglobin [33], cm^-1/(mol/L) (Table 3).
         e_deoxy: Molar extinction of deoxyhemoglobin [33], cm^-1/(mol/L) (Table 3).
@@ -61,7 +76,8 @@ class SkinOptics:
         InputError: For a value outside its range; it is a `ValueError`.
 
     Source:
-        Tables 1 to 3 of Alotaibi & Smith 2017.
+        Tables 1 to 3 of Alotaibi & Smith 2017; `python -m tools.fit_skin` for what was fitted to
+        measured spectra.
 
     Example:
         >>> from dataclasses import fields
@@ -74,33 +90,46 @@ class SkinOptics:
 
     c_eum: Constant = _constant(80.0, "g/L", 0.0, 1e3, "Thody et al. 1991")
     c_phm: Constant = _constant(12.0, "g/L", 0.0, 1e3, "Thody et al. 1991")
-    f_eum: Constant = _constant(0.61, "fraction", 0.0, 1.0, "Hennessy et al. 2005")
+    f_eum: Constant = _constant(
+        1.0, "fraction", 0.0, 1.0, "1: eps_eum is that of melanin as a whole; Jacques 1998"
+    )
     c_hem: Constant = _constant(150.0, "g/L", 0.0, 1e3, "Flewelling 1981")
     g: Constant = _constant(64500.0, "g/mol", 1e4, 1e5, "Jacques 1998")
-    f_oxy: Constant = _constant(0.75, "fraction", 0.0, 1.0, "Mitsou et al. 2014")
-    d_epd: Constant = _constant(0.021, "cm", 0.0, 1.0, "Anderson & Parrish 1981")
-    d_pd: Constant = _constant(0.2, "cm", 1e-6, 10.0, "Anderson & Parrish 1981")
+    f_oxy: Constant = _constant(0.685, "fraction", 0.0, 1.0, _FITTED + "Mitsou et al. 2014 has .75")
+    d_epd: Constant = _constant(
+        0.014, "cm", 0.0, 1.0, "convention: 70 um that diffuse light crosses at twice their length"
+    )
+    d_pd: Constant = _constant(0.2, "cm", 1e-6, 10.0, _FITTED + "Anderson & Parrish 1981 have .2")
     d_base: Constant | None = _constant(
         None, "cm", 0.0, 1.0, "path of the epidermis' baseline absorption; None: d_epd"
     )
     r_vessel: Constant = _constant(
-        20e-4,
-        "cm",
-        0.0,
-        0.1,
-        "pigment packaging (Duysens 1956), chosen on the NIST spectra; 0: off",
+        5.9e-4, "cm", 0.0, 0.1, _FITTED + "pigment packaging, Duysens 1956; 0: off"
+    )
+    r_melanin: Constant = _constant(
+        5.3e-4, "cm", 0.0, 0.1, _FITTED + "pigment packaging, Duysens 1956; 0: off"
     )
     blood_epd: Constant = _constant(
         0.0, "fraction of f_blood", 0.0, 1.0, "blood in the epidermis; only the authors' release"
     )
-    base_floor: Constant = _constant(0.244, "cm^-1", 0.0, 1e3, "Jacques 1998")
-    base_scale: Constant = _constant(85.3, "cm^-1", 0.0, 1e5, "Jacques 1998")
-    mie: Constant = _constant(2e5, "cm^-1 nm^1.5", 0.0, 1e9, "Jacques 1996")
-    rayleigh: Constant = _constant(2e12, "cm^-1 nm^4", 0.0, 1e16, "Jacques 1996")
-    eps_eum: Tensor = _spectrum("melanin", "eumelanin", "L g^-1 cm^-1", "OMLC, Sarna & Swartz")
-    eps_phm: Tensor = _spectrum("melanin", "pheomelanin", "L g^-1 cm^-1", "OMLC, Sarna & Swartz")
-    e_oxy: Tensor = _spectrum("hemoglobin", "oxy", "cm^-1/(mol/L)", "Prahl 1999")
-    e_deoxy: Tensor = _spectrum("hemoglobin", "deoxy", "cm^-1/(mol/L)", "Prahl 1999")
+    base_floor: Constant = _constant(0.192, "cm^-1", 0.0, 1e3, _FITTED + "Jacques 1998 has .244")
+    base_scale: Constant = _constant(67.2, "cm^-1", 0.0, 1e5, _FITTED + "Jacques 1998 has 85.3")
+    mie: Constant = _constant(2.56e5, "cm^-1 nm^1.5", 0.0, 1e9, _FITTED + "Jacques 1996 has 2e5")
+    rayleigh: Constant = _constant(
+        2.34e12, "cm^-1 nm^4", 0.0, 1e16, _FITTED + "Jacques 1996 has 2e12"
+    )
+    eps_eum: Tensor = _spectrum(
+        lambda: _power_law(6.6e11 / 80, -3.33), "L g^-1 cm^-1", "Jacques 1998, over c_eum"
+    )
+    eps_phm: Tensor = _spectrum(
+        partial(_read_column, "melanin", "pheomelanin"), "L g^-1 cm^-1", "OMLC, Sarna & Swartz"
+    )
+    e_oxy: Tensor = _spectrum(
+        partial(_read_column, "hemoglobin", "oxy"), "cm^-1/(mol/L)", "Prahl 1999"
+    )
+    e_deoxy: Tensor = _spectrum(
+        partial(_read_column, "hemoglobin", "deoxy"), "cm^-1/(mol/L)", "Prahl 1999"
+    )
     dermis: Callable[[Tensor, Tensor, Tensor], Tensor] = kubelka_munk
 
     def __post_init__(self) -> None:
@@ -116,7 +145,7 @@ class SkinOptics:
         """Return one of `PRESETS`, with some constants replaced.
 
         Args:
-            name: `calibrated`, `paper`, `authors` or `printed`.
+            name: `measured`, `calibrated`, `paper`, `authors` or `printed`.
             constants: New values of constants, by name.
 
         Returns:
@@ -157,15 +186,26 @@ def _check_range(
         )
 
 
-def _printed_extinction(scale: float, power: float) -> Tensor:
-    return scale * WAVELENGTHS**power
-
+_TABLES_1_TO_3 = SkinOptics(
+    f_eum=0.61,
+    f_oxy=0.75,
+    d_epd=0.021,
+    r_vessel=0.0,
+    r_melanin=0.0,
+    base_floor=0.244,
+    base_scale=85.3,
+    mie=2e5,
+    rayleigh=2e12,
+    eps_eum=_read_column("melanin", "eumelanin"),
+)
 
 PRESETS: Mapping[str, SkinOptics] = MappingProxyType(
     {
-        "calibrated": SkinOptics(),
-        "paper": SkinOptics(r_vessel=0.0),
-        "authors": SkinOptics(
+        "measured": SkinOptics(),
+        "calibrated": replace(_TABLES_1_TO_3, r_vessel=20e-4),
+        "paper": _TABLES_1_TO_3,
+        "authors": replace(
+            _TABLES_1_TO_3,
             d_epd=0.02,
             d_pd=0.3,
             g=66500.0,
@@ -173,20 +213,21 @@ PRESETS: Mapping[str, SkinOptics] = MappingProxyType(
             base_scale=8.53,
             d_base=1.0,
             blood_epd=0.25,
-            r_vessel=0.0,
         ),
-        "printed": SkinOptics(
-            eps_eum=_printed_extinction(6.6e11, -3.33),
-            eps_phm=_printed_extinction(2.9e10, -4.75),
+        "printed": replace(
+            _TABLES_1_TO_3,
+            eps_eum=_power_law(6.6e11, -3.33),
+            eps_phm=_power_law(2.9e10, -4.75),
             d_base=1.0,
-            r_vessel=0.0,
             dermis=_kubelka_munk_printed,
         ),
     }
 )
-"""Constants by name: Tables 1 to 3 of Alotaibi & Smith 2017, read in four ways.
+"""Constants by name: Tables 1 to 3 of Alotaibi & Smith 2017, and what measured spectra change.
 
-- `calibrated` (default): `paper` with blood in vessels of 20 um radius.
+- `measured` (default): fitted to the spectra of faces and forearms of all tones, with the
+  literature as the starting point. `python -m tools.fit_skin` prints how far each constant moved.
+- `calibrated`: `paper` with blood in vessels of 20 um radius, chosen on 100 forearms.
 - `paper`: Tables 1 to 3 in consistent units.
 - `authors`: the constants of the authors' later MATLAB release (github.com/ssma502/SkinModel).
 - `printed`: the paper's text, literally. It makes every skin black and is kept for comparison.

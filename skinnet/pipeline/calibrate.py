@@ -58,7 +58,7 @@ class ColourSettings:
 
     light: str = "D65"
     camera: str = "mean"
-    optics: str = "calibrated"
+    optics: str = "measured"
     calibration: str = "exposure"
     white: tuple[int, int, int] | None = None
     f_mel: tuple[float, float] = (0.0, 0.43)

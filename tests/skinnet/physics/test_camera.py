@@ -30,7 +30,7 @@ def spectra(count: int = 20) -> np.ndarray:
     """Skin, a colour checker, and smooth random reflectance."""
     patches = colour.SDS_COLOURCHECKERS["BabelColor Average"].values()
     checker = np.stack([patch[oracle.WAVELENGTHS] for patch in patches])
-    skin = oracle.reflectance("calibrated", np.linspace(0, 1, count), np.linspace(0, 0.3, count))
+    skin = oracle.reflectance("measured", np.linspace(0, 1, count), np.linspace(0, 0.3, count))
     waves = np.random.default_rng(0).normal(size=(count, 6))
     phase = np.linspace(0, 1, 33)[:, None] * np.arange(6) * np.pi
     return np.concatenate([checker, skin, 1 / (1 + np.exp(-waves @ np.cos(phase).T))])

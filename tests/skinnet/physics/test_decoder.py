@@ -28,7 +28,7 @@ def maps(*shape: int, count: int = 2, seed: int = 0) -> list[torch.Tensor]:
 @MODES
 def test_standard_capture_agrees_with_the_oracle(fast: bool) -> None:
     decoder, (f_mel, f_blood) = SkinDecoder(fast=fast, dtype=D), maps(9, 7)
-    spectra = oracle.reflectance("calibrated", f_mel.numpy(), f_blood.numpy())
+    spectra = oracle.reflectance("measured", f_mel.numpy(), f_blood.numpy())
     rgb = oracle.linear_srgb(spectra, oracle.daylight(6504.0), decoder.camera.mean.numpy())
     actual = decoder(f_mel, f_blood).movedim(0, -1).numpy()
     assert actual == pytest.approx(rgb, abs=5e-4 if fast else 1e-6)

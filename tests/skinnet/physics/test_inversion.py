@@ -162,7 +162,7 @@ def test_half_precision_gives_single_precision() -> None:
 
 def test_a_trainable_constant_is_used_and_not_changed() -> None:
     constant = nn.Parameter(torch.tensor(0.03))
-    lookup = SkinLookup(SkinReflectance(SkinOptics.preset("calibrated", d_epd=constant)))
+    lookup = SkinLookup(SkinReflectance(SkinOptics.preset("measured", d_epd=constant)))
     inverse = lookup.inverse(MATRIX.float().requires_grad_())
     exact = lookup.reflectance(0.1, 0.05) @ MATRIX.float()
     found = inverse(exact)

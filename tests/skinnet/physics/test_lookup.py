@@ -23,7 +23,7 @@ def maps(*shape: int, seed: int = 0) -> tuple[torch.Tensor, torch.Tensor]:
 
 
 def thick(value: float = 0.05) -> SkinOptics:
-    return SkinOptics.preset("calibrated", d_epd=value)
+    return SkinOptics.preset("measured", d_epd=value)
 
 
 @pytest.mark.parametrize("preset", PRESETS)
@@ -93,7 +93,7 @@ def test_table_is_stored_and_refreshed() -> None:
 
 def test_trainable_constants_make_the_table_on_every_call() -> None:
     constant = nn.Parameter(torch.tensor(0.021, dtype=D))
-    decoder = SkinDecoder(SkinOptics.preset("calibrated", d_epd=constant), dtype=D)
+    decoder = SkinDecoder(SkinOptics.preset("measured", d_epd=constant), dtype=D)
     with torch.no_grad():
         constant.fill_(0.05)
     # The nodes stay where the first value put them, so the two tables differ by their error.
@@ -124,7 +124,7 @@ def test_loading_into_a_copy_refreshes_its_table() -> None:
 
 def test_freezing_a_trained_constant_keeps_its_value() -> None:
     constant = nn.Parameter(torch.tensor(0.021, dtype=D))
-    decoder = SkinDecoder(SkinOptics.preset("calibrated", d_epd=constant), dtype=D)
+    decoder = SkinDecoder(SkinOptics.preset("measured", d_epd=constant), dtype=D)
     with torch.no_grad():
         constant.fill_(0.05)
     trained = decoder(*maps(4, 4)).detach()

@@ -23,6 +23,7 @@ CHANGED: dict[str, Any] = {
     "d_pd": 0.05,
     "d_base": 0.5,
     "r_vessel": 10e-4,
+    "r_melanin": 5e-4,
     "blood_epd": 0.1,
     "base_floor": 0.5,
     "base_scale": 50.0,
@@ -33,7 +34,13 @@ CHANGED: dict[str, Any] = {
     "e_oxy": 0.5 * read_table("hemoglobin")["oxy"],
     "e_deoxy": 0.5 * read_table("hemoglobin")["deoxy"],
 }
-MEDIANS = {"calibrated": 0.0170, "paper": 0.036, "authors": 0.16, "printed": 0.44}
+MEDIANS = {
+    "measured": 0.0120,
+    "calibrated": 0.0170,
+    "paper": 0.036,
+    "authors": 0.16,
+    "printed": 0.44,
+}
 
 
 def skin(**constants: Any) -> SkinReflectance:
@@ -74,7 +81,9 @@ def test_constant_is_trainable_with_the_right_gradient(name: str) -> None:
     )
 
 
-@pytest.mark.parametrize("name", ["r_vessel", "f_oxy", "blood_epd", "d_epd", "base_floor"])
+@pytest.mark.parametrize(
+    "name", ["r_vessel", "r_melanin", "f_oxy", "blood_epd", "d_epd", "base_floor"]
+)
 def test_constant_has_a_gradient_where_it_is_zero(name: str) -> None:
     model = skin(**{name: nn.Parameter(torch.zeros((), dtype=torch.float64))})
     zero = torch.zeros((), dtype=torch.float64, requires_grad=True)
@@ -87,13 +96,17 @@ def test_constant_has_a_gradient_where_it_is_zero(name: str) -> None:
     )
 
 
-def test_calibrated_is_paper_with_pigment_packaging_and_the_default() -> None:
+def test_calibrated_is_paper_with_packaging_of_blood() -> None:
     for item in fields(SkinOptics):
         ours, theirs = (getattr(PRESETS[name], item.name) for name in ("calibrated", "paper"))
         same = torch.equal(ours, theirs) if isinstance(ours, torch.Tensor) else ours == theirs
         assert same != (item.name == "r_vessel"), item.name
+
+
+def test_measured_is_the_default() -> None:
     f = fractions()
-    assert torch.equal(SkinReflectance()(*f), SkinReflectance(PRESETS["calibrated"])(*f))
+    assert torch.equal(SkinReflectance()(*f), SkinReflectance(PRESETS["measured"])(*f))
+    assert torch.equal(SkinReflectance(SkinOptics())(*f), SkinReflectance("measured")(*f))
 
 
 def test_presets_are_frozen() -> None:
@@ -128,7 +141,9 @@ def test_constant_out_of_its_range_is_refused_with_its_value(name: str, value: f
 
 
 def test_unknown_names_are_refused_with_the_known_ones() -> None:
-    with pytest.raises(ValueError, match=r"no preset 'skin'.*calibrated, paper, authors, printed"):
+    with pytest.raises(
+        ValueError, match=r"no preset 'skin'.*measured, calibrated, paper, authors, printed"
+    ):
         SkinReflectance("skin")
     with pytest.raises(ValueError, match=r"no constant f_oxi; it has .*f_oxy"):
         SkinOptics.preset("paper", f_oxi=0.5)

@@ -56,7 +56,12 @@ def test_reflectance_lies_in_unit_interval(preset: str, dtype: torch.dtype) -> N
     assert torch.isfinite(spectra).all() and spectra.min() >= 0 and spectra.max() <= 1
 
 
-@given(fraction, fraction, st.floats(1e-3, 1), st.sampled_from(["calibrated", "paper", "authors"]))
+@given(
+    fraction,
+    fraction,
+    st.floats(1e-3, 1),
+    st.sampled_from(["measured", "calibrated", "paper", "authors"]),
+)
 def test_more_pigment_is_darker_at_every_band(
     f: float, other: float, step: float, name: str
 ) -> None:
@@ -136,8 +141,8 @@ def test_exported_graph_has_no_check_and_the_same_answer() -> None:
 
 
 def test_constants_keep_all_digits_in_float64() -> None:
-    assert SkinReflectance(dtype=torch.float64).d_epd.item() == 0.021
-    exact = oracle.reflectance("calibrated", 0.1, 0.05)
+    assert SkinReflectance(dtype=torch.float64).d_epd.item() == 0.014
+    exact = oracle.reflectance("measured", 0.1, 0.05)
     actual = SkinReflectance(dtype=torch.float64)(0.1, 0.05)
     assert actual.numpy() == pytest.approx(exact, abs=1e-12)
 
