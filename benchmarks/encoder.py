@@ -66,6 +66,7 @@ class TestSet:
     batch_size: int = 16
     portraits: str = str(SHARED / "faces")
     every_portrait: int = 1
+    optics: str = "calibrated"
 
 
 def render_test_set(settings: TestSet, decoder: SkinDecoder) -> Iterator[Pictures]:
@@ -100,6 +101,7 @@ def _make_faces(settings: TestSet, size: int, test: int = 1, val: int = 1) -> Sy
         ict=ict,
         geometry=settings.geometry,
         seed=settings.seed,
+        optics=settings.optics,
     )
 
 
@@ -135,7 +137,8 @@ def measure(
     if models is None:
         models = load_networks()
         weights = {name: model.trained_on for name, model in models.items()}
-    decoder = SkinDecoder()
+    _check_preset(settings, models)
+    decoder = SkinDecoder(settings.optics)
     mean = average_training_set(settings, decoder)
     pictures = list(render_test_set(settings, decoder))
     ica = Tsumura(decoder)
@@ -155,6 +158,15 @@ def measure(
         "asked": ASKED,
         "settings": {**_describe_settings(settings, mean, ica), "weights": weights},
     }
+
+
+def _check_preset(settings: TestSet, models: Mapping[str, SkinAutoencoder]) -> None:
+    for name, model in models.items():
+        if (preset := model.config.optics) != settings.optics:
+            raise InputError(
+                f"{name} was trained with the preset {preset} and the pictures have the skin of "
+                f"{settings.optics}; give both the same."
+            )
 
 
 def _measure_portraits(settings: TestSet, models: Mapping[str, SkinAutoencoder]) -> Results | None:

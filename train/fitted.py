@@ -23,6 +23,7 @@ from train.fitted_scenes import (
     cast_views,
     render_fitted,
 )
+from train.preset import check_preset
 from train.stream import StreamLoader, count_seen_samples
 from train.synthetic.face_sampling import sample_specular
 from train.synthetic.head_cache import SPLITS
@@ -101,7 +102,8 @@ class FittedFaces(LightningDataModule):
         self.size, self.texels, self.batch_size, self.shots = size, texels, batch_size, shots
         self.samples = {"train": train_samples, "val": val_samples}
         self.seed = seed
-        self.decoder = SkinDecoder()
+        self.preset: str | None = None
+        self.decoder: SkinDecoder | None = None
         self.model: HybridModel | None = None
         self.textures: list[tuple[NDArray[np.float32], NDArray[np.float32]]] = []
         self.views: list[FittedView] = []
@@ -132,10 +134,23 @@ class FittedFaces(LightningDataModule):
             )
         if self.model_file is not None:
             self.model = HybridModel.load(self.model_file)
+            self._use_preset(self.model.colour.optics, self.model_file)
         rng = np.random.default_rng([self.seed, 3])
         for maps, mesh in pairs:
-            self.textures.append(average_texels(load_maps(maps)[0], self.texels))
+            texture, colour = load_maps(maps)
+            self._use_preset(colour.optics, maps)
+            self.textures.append(average_texels(texture, self.texels))
             self.views += cast_views(mesh, self.shots, self.size, rng)
+
+    def _use_preset(self, preset: str, file: Path) -> None:
+        """Render with the preset that the maps were inverted with; all have the same."""
+        check_preset(self.trainer, preset, str(file))
+        if self.preset not in (None, preset):
+            raise InputError(
+                f"{file} was made with the preset {preset}, other files with {self.preset}; make "
+                "all of them with one --colour.optics."
+            )
+        self.preset, self.decoder = preset, self.decoder or SkinDecoder(preset)
 
     def sample_texture(
         self, face: int, rng: np.random.Generator
@@ -173,5 +188,6 @@ class FittedFaces(LightningDataModule):
         """Render a batch of scenes on the device that it was sent to."""
         scene: FittedScene = batch
         testing = self.trainer is not None and self.trainer.testing
+        assert self.decoder is not None  # setup has read the maps.
         decoder = self.decoder.to(scene.wall.device)
         return render_fitted(scene, decoder, "test" if testing else "train")

@@ -113,6 +113,7 @@ class SkinTask(LightningModule):
 
     def _start_from(self, path: str) -> str:
         start = SkinAutoencoder.from_pretrained(path)
+        self._check_preset(path, start.config.optics)
         try:
             self.model.load_state_dict(start.state_dict())
         except RuntimeError as error:
@@ -201,6 +202,18 @@ class SkinTask(LightningModule):
             "optimizer": optimizer,
             "lr_scheduler": {"scheduler": schedule, "interval": "step"},
         }
+
+    def _check_preset(self, source: str, preset: str) -> None:
+        if preset != (own := self.model.config.optics):
+            raise InputError(
+                f"{source} was trained with the skin of the preset {preset} and this run has "
+                f"{own}, in which the same fractions have other colours; add --model.optics "
+                f"{preset}."
+            )
+
+    def on_load_checkpoint(self, checkpoint: dict[str, Any]) -> None:
+        """Refuse to continue a run with another preset, which its state would replace."""
+        self._check_preset("The checkpoint", checkpoint["skinnet"]["optics"])
 
     def on_save_checkpoint(self, checkpoint: dict[str, Any]) -> None:
         """Describe the model, so that `SkinAutoencoder.from_pretrained` can load it."""

@@ -38,7 +38,10 @@ def model() -> SkinAutoencoder:
 @pytest.fixture(scope="module")
 def found(model: SkinAutoencoder, tmp_path_factory: pytest.TempPathFactory) -> dict[str, Any]:
     geometry = tmp_path_factory.mktemp("geometry")
-    return encoder.measure(encoder.TestSet(**TINY, geometry=str(geometry)), {"stage2": model})
+    return encoder.measure(
+        encoder.TestSet(**TINY, optics=model.config.optics, geometry=str(geometry)),
+        {"stage2": model},
+    )
 
 
 @pytest.fixture(scope="module")

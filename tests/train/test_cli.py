@@ -209,6 +209,32 @@ def test_weights_to_start_from_are_their_own_argument(
     assert "another shape" in capsys.readouterr().err
 
 
+def test_weights_of_another_preset_are_refused(
+    fit: Fit, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    start = tmp_path / "start.safetensors"
+    SkinAutoencoder(AutoencoderConfig("paper", widths=(4, 8))).save_pretrained(start)
+    assert fit(tmp_path / "run", f"--model.weights={start}") == 2
+    assert "add --model.optics paper." in capsys.readouterr().err
+
+
+def test_a_run_is_not_continued_with_another_preset(
+    fit: Fit, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    assert fit(tmp_path / "run", "--trainer.max_steps=1") == 0
+    last = tmp_path / "run" / "last.ckpt"
+    presets = ("--model.optics=paper", "--data.init_args.optics=paper")
+    assert fit(tmp_path / "run", f"--ckpt_path={last}", *presets) == 2
+    assert "was trained with the skin of the preset measured" in capsys.readouterr().err
+
+
+def test_data_of_another_preset_than_the_model_are_refused(
+    fit: Fit, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    assert fit(tmp_path / "run", "--data.init_args.optics=paper") == 2
+    assert "Add --model.optics paper" in capsys.readouterr().err
+
+
 @pytest.mark.parametrize(
     ("old", "new"),
     [

@@ -11,6 +11,7 @@ from torch.utils.data import DataLoader, Dataset
 
 from skinnet.physics import SkinDecoder
 from train.batch import Batch
+from train.preset import check_preset
 from train.stream import StreamLoader, count_seen_samples
 from train.synthetic.head_cache import SPLITS, load_or_cast_heads
 from train.synthetic.head_cast import HeadCast
@@ -88,6 +89,7 @@ class SyntheticFaces(LightningDataModule):
         skins: .npz of `python -m train.synthetic.skins` or `examples/london.py`: skins sampled from
             a hybrid model, one of which half of the faces then have. Without it all skins are
             painted.
+        optics: Preset of the skin's optical constants, which must be that of the model.
         seed: Seed of everything that is sampled.
         workers: Processes that cast heads and sample scenes; 0 does both in the training process.
     """
@@ -105,6 +107,7 @@ class SyntheticFaces(LightningDataModule):
         ict: str | None = None,
         geometry: str = "runs/geometry",
         skins: str | None = None,
+        optics: str = "measured",
         seed: NonNegativeInt = 0,
         workers: NonNegativeInt = 0,
     ) -> None:
@@ -116,7 +119,7 @@ class SyntheticFaces(LightningDataModule):
         self.geometry, self.seed, self.workers = Path(geometry), seed, workers
         self.skins_file = None if skins is None else Path(skins)
         self.skins: ModelSkins | None = None
-        self.decoder = SkinDecoder()
+        self.optics, self.decoder = optics, SkinDecoder(optics)
         self.buffers: dict[str, HeadBuffers] = {}
 
     @property
@@ -134,7 +137,12 @@ class SyntheticFaces(LightningDataModule):
             self._load_heads(split)
 
     def setup(self, stage: str) -> None:
-        """Load the heads that a stage needs, or cast them: fit, validate or test."""
+        """Load the heads that a stage needs, or cast them: fit, validate or test.
+
+        Raises:
+            InputError: For skins that cannot be read, or a model with another preset.
+        """
+        check_preset(self.trainer, self.optics, "Synthetic faces")
         if self.skins is None and self.skins_file is not None:
             self.skins = load_model_skins(self.skins_file)
         for split in STAGES[stage]:

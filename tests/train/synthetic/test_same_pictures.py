@@ -6,8 +6,10 @@ import pytest
 import torch
 from torch.utils.data import default_collate
 
+from skinnet.physics import SkinDecoder
 from train.batch import Batch
 from train.synthetic.faces import SyntheticFaces, SyntheticScenes
+from train.synthetic.renderer import render
 
 TRAIN = (0.21912456, 0.0242834, 0.02715974, 0.0537778, 0.00268468, 0.07689927, 0.16027005)
 TEST = (0.29194102, 0.03692688, 0.02704669, 0.04756396, 0.00177844, 0.2123137, 0.21221191)
@@ -29,5 +31,6 @@ def test_pictures_are_those_of_earlier_versions(
     scenes = SyntheticScenes(
         data.buffers[split], split, 4, seed=0, domain_randomised=split == "train"
     )
-    batch = data.render(default_collate([scenes[index] for index in range(4)]), split)
+    scene = default_collate([scenes[index] for index in range(4)])
+    batch = render(scene, SkinDecoder("calibrated"), split)
     assert tuple(describe(batch)) == pytest.approx(expected, abs=1e-5)
