@@ -116,7 +116,11 @@ class Decomposer:
             camera=_name_camera(encoder_outputs),
             box=box,
             output_info=self.encoder.output_info,
-            model={"version": self.encoder.version, "trained_on": self.encoder.trained_on},
+            model={
+                "version": self.encoder.version,
+                "trained_on": self.encoder.trained_on,
+                "optics": self.encoder.optics,
+            },
         )
 
     def edit(

@@ -37,7 +37,8 @@ class Decomposition:
             blended with the decoder's picture off skin; the photograph itself outside `box`.
         box: The part of the photograph that was decomposed.
         output_info: Unit, range and description of each map.
-        model: `version` and `trained_on` of the encoder.
+        model: `version` and `trained_on` of the encoder, and `optics`, the preset of the skin's
+            constants to which its fractions belong: `SkinDecoder(model["optics"])` renders them.
 
     Example:
         >>> from skimage.data import astronaut

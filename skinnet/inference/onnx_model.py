@@ -58,6 +58,7 @@ class OnnxModel:
         session: The onnxruntime session.
         version: Version of skinnet that exported the file.
         trained_on: What the weights were trained on.
+        optics: Preset of the skin's constants to which the fractions belong.
         working_size: Longer side, in pixels, to which the encoder's photographs are resized.
         lights: Names of the lights that the output `light` weights.
         output_info: Unit, range and description of each map of the encoder; empty for a decoder.
@@ -75,6 +76,7 @@ class OnnxModel:
     session: onnxruntime.InferenceSession
     version: str
     trained_on: str
+    optics: str
     working_size: int
     lights: tuple[str, ...]
     output_info: Mapping[str, OutputInfo]
@@ -194,6 +196,7 @@ def _read_metadata(
             session,
             metadata["skinnet.version"],
             metadata["skinnet.trained_on"],
+            metadata["skinnet.optics"],
             size,
             tuple(json.loads(metadata["skinnet.lights"])),
             {name: _read_output_info(outputs[name]) for name in maps},

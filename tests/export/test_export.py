@@ -14,6 +14,7 @@ from safetensors import safe_open
 from safetensors.torch import save_file
 
 from export.__main__ import main
+from skinnet.inference import SHIPPED_ENCODER
 from skinnet.network import AutoencoderConfig, SkinAutoencoder
 from skinnet.network._weights import WEIGHTS_FORMAT
 
@@ -56,6 +57,16 @@ def test_a_file_is_complete_and_has_its_metadata(exported: Path, name: str) -> N
     assert all({"unit", "range", "description"} <= set(output) for output in outputs.values())
     assert message["skinnet.working_size"] == "48" and message["skinnet.license"] == "MIT"
     assert message["skinnet.trained_on"] == "nothing at all"
+
+
+@pytest.mark.parametrize("name", ["skin.onnx", "skin.decoder.onnx"])
+def test_metadata_have_the_keys_of_the_shipped_files(exported: Path, name: str) -> None:
+    shipped = SHIPPED_ENCODER.with_name(name)
+    keys = [
+        {entry.key for entry in onnx.load(path).metadata_props}
+        for path in (exported.with_name(name), shipped)
+    ]
+    assert keys[0] == keys[1]
 
 
 def test_encoder_and_decoder_make_the_reconstruction_of_torch(exported: Path) -> None:

@@ -32,6 +32,8 @@ METADATA = {
     "format": "1",
     "version": "0.1.0",
     "trained_on": "nothing",
+    "optics": "paper",
+    "optics": "paper",
     "license": "MIT",
     "working_size": "64",
     "lights": json.dumps(LIGHTS),

@@ -20,7 +20,7 @@ def test_the_summary_is_json_of_what_the_arrays_hold(decomposition: Decompositio
     assert summary["box"] == decomposition.box._asdict()
     assert summary["photo"] == {"width": 512, "height": 512}
     assert summary["version"] == __version__
-    assert summary["model"] == {"version": "0.1.0", "trained_on": "nothing"}
+    assert summary["model"] == {"version": "0.1.0", "trained_on": "nothing", "optics": "paper"}
 
 
 def test_without_skin_the_numbers_are_none(skinless_file: Path, astronaut: np.ndarray) -> None:
