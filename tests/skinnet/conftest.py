@@ -33,7 +33,6 @@ METADATA = {
     "version": "0.1.0",
     "trained_on": "nothing",
     "optics": "paper",
-    "optics": "paper",
     "license": "MIT",
     "working_size": "64",
     "lights": json.dumps(LIGHTS),
