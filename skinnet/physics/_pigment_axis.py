@@ -36,8 +36,11 @@ class PigmentAxis(NamedTuple):
         return scale, -math.log(self.low + self.spacing) * scale
 
     def fractions(self, position: Float[np.ndarray, "*shape"]) -> Float[np.ndarray, "*shape"]:
-        """Fractions at positions, in the precision of `position`."""
+        """Fractions at positions, in the precision of `position`; at its ends the range's own."""
         fraction = self.spacing * np.expm1(
             math.log1p(self.low / self.spacing) + self.step * position
         )
+        # Rounding would put a position on the border just inside the range.
+        fraction = np.where(position > 0, fraction, self.low)
+        fraction = np.where(position < self.nodes - 1, fraction, self.high)
         return fraction.clip(self.low, self.high).astype(position.dtype)
