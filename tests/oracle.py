@@ -38,14 +38,15 @@ PAPER: Mapping[str, float] = MappingProxyType(
 
 MEASURED: Mapping[str, float] = MappingProxyType(
     {
-        "f_oxy": 0.685,
+        "f_oxy": 0.687,
         "d_epd": 0.014,
+        "d_pd": 0.219,
         "r": 5.9e-4,
-        "r_melanin": 5.3e-4,
-        "floor": 0.192,
-        "scale": 67.2,
-        "mie": 2.56e5,
-        "rayleigh": 2.34e12,
+        "r_melanin": 5.35e-4,
+        "floor": 0.188,
+        "scale": 65.9,
+        "mie": 2.46e5,
+        "rayleigh": 2.27e12,
     }
 )
 

@@ -95,11 +95,11 @@ class SkinOptics:
     )
     c_hem: Constant = _constant(150.0, "g/L", 0.0, 1e3, "Flewelling 1981")
     g: Constant = _constant(64500.0, "g/mol", 1e4, 1e5, "Jacques 1998")
-    f_oxy: Constant = _constant(0.685, "fraction", 0.0, 1.0, _FITTED + "Mitsou et al. 2014 has .75")
+    f_oxy: Constant = _constant(0.687, "fraction", 0.0, 1.0, _FITTED + "Mitsou et al. 2014 has .75")
     d_epd: Constant = _constant(
         0.014, "cm", 0.0, 1.0, "convention: 70 um that diffuse light crosses at twice their length"
     )
-    d_pd: Constant = _constant(0.2, "cm", 1e-6, 10.0, _FITTED + "Anderson & Parrish 1981 have .2")
+    d_pd: Constant = _constant(0.219, "cm", 1e-6, 10.0, _FITTED + "Anderson & Parrish 1981 have .2")
     d_base: Constant | None = _constant(
         None, "cm", 0.0, 1.0, "path of the epidermis' baseline absorption; None: d_epd"
     )
@@ -107,16 +107,16 @@ class SkinOptics:
         5.9e-4, "cm", 0.0, 0.1, _FITTED + "pigment packaging, Duysens 1956; 0: off"
     )
     r_melanin: Constant = _constant(
-        5.3e-4, "cm", 0.0, 0.1, _FITTED + "pigment packaging, Duysens 1956; 0: off"
+        5.35e-4, "cm", 0.0, 0.1, _FITTED + "pigment packaging, Duysens 1956; 0: off"
     )
     blood_epd: Constant = _constant(
         0.0, "fraction of f_blood", 0.0, 1.0, "blood in the epidermis; only the authors' release"
     )
-    base_floor: Constant = _constant(0.192, "cm^-1", 0.0, 1e3, _FITTED + "Jacques 1998 has .244")
-    base_scale: Constant = _constant(67.2, "cm^-1", 0.0, 1e5, _FITTED + "Jacques 1998 has 85.3")
-    mie: Constant = _constant(2.56e5, "cm^-1 nm^1.5", 0.0, 1e9, _FITTED + "Jacques 1996 has 2e5")
+    base_floor: Constant = _constant(0.188, "cm^-1", 0.0, 1e3, _FITTED + "Jacques 1998 has .244")
+    base_scale: Constant = _constant(65.9, "cm^-1", 0.0, 1e5, _FITTED + "Jacques 1998 has 85.3")
+    mie: Constant = _constant(2.46e5, "cm^-1 nm^1.5", 0.0, 1e9, _FITTED + "Jacques 1996 has 2e5")
     rayleigh: Constant = _constant(
-        2.34e12, "cm^-1 nm^4", 0.0, 1e16, _FITTED + "Jacques 1996 has 2e12"
+        2.27e12, "cm^-1 nm^4", 0.0, 1e16, _FITTED + "Jacques 1996 has 2e12"
     )
     eps_eum: Tensor = _spectrum(
         lambda: _power_law(6.6e11 / 80, -3.33), "L g^-1 cm^-1", "Jacques 1998, over c_eum"
@@ -190,6 +190,7 @@ _TABLES_1_TO_3 = SkinOptics(
     f_eum=0.61,
     f_oxy=0.75,
     d_epd=0.021,
+    d_pd=0.2,
     r_vessel=0.0,
     r_melanin=0.0,
     base_floor=0.244,
