@@ -51,7 +51,7 @@ def test_gradients_are_right(colour: SkinColour) -> None:
 def test_a_record_restores_it_exactly(colour: SkinColour) -> None:
     restored = SkinColour.from_record(json.loads(json.dumps(colour.to_record())))
     assert restored.to_record() == colour.to_record()
-    assert (restored.light, restored.camera, restored.optics) == ("LED-B3", "D200", "calibrated")
+    assert (restored.light, restored.camera, restored.optics) == ("LED-B3", "D200", "measured")
     assert torch.equal(restored(features(3)), colour(features(3)))
 
 
