@@ -10,6 +10,7 @@ from skinnet.physics._parameters import check_fraction
 from skinnet.physics.camera import SpectralCamera
 from skinnet.physics.capture import Capture
 from skinnet.physics.lookup import SkinLookup
+from skinnet.physics.nuisance import Nuisance
 from skinnet.physics.optics import SkinOptics
 from skinnet.physics.reflectance import SkinReflectance
 
@@ -136,6 +137,7 @@ class SkinDecoder(nn.Module):
         f_mel: Float[Tensor, "*batch height width"],
         f_blood: Float[Tensor, "*batch height width"],
         matrix: Float[Tensor, "*batch wavelength 3"],
+        nuisance: Nuisance | None = None,
     ) -> Float[Tensor, "*batch 3 height width"]:
         """Render the diffuse albedo: the colour of evenly lit skin (equation 4).
 
@@ -143,15 +145,19 @@ class SkinDecoder(nn.Module):
             f_mel: Melanosome volume fraction.
             f_blood: Blood volume fraction.
             matrix: Spectrum-to-RGB matrix of each image.
+            nuisance: Deviations of each image's skin from the preset [*batch]; None: none.
 
         Returns:
             Linear sRGB of the albedo.
         """
         if not self.fast:
-            return apply_matrix(self.reflectance.bands(f_mel, f_blood), matrix).movedim(-1, -3)
+            if nuisance is not None:
+                nuisance = Nuisance(*(deviation[..., None, None] for deviation in nuisance))
+            spectra = self.reflectance.bands(f_mel, f_blood, nuisance)
+            return apply_matrix(spectra, matrix).movedim(-1, -3)
         batch, size = f_mel.shape[:-2], f_mel.shape[-2:]
         image = self.lookup.sample(
-            self.lookup.colours(matrix).reshape(-1, 3, *self.lookup.nodes),
+            self.lookup.colours(matrix, nuisance).reshape(-1, 3, *self.lookup.nodes),
             f_mel.reshape(-1, *size),
             f_blood.reshape(-1, *size),
         )

@@ -8,8 +8,10 @@ import torch.nn.functional as F
 from jaxtyping import Float
 from torch import Tensor, nn
 
+from skinnet.physics._linear_algebra import apply_matrix
 from skinnet.physics._pigment_axis import PigmentAxis
 from skinnet.physics.inversion import F_BLOOD_RANGE, F_MEL_RANGE, SkinInverse
+from skinnet.physics.nuisance import Nuisance
 from skinnet.physics.reflectance import SkinReflectance
 
 _NODES = (96, 64)
@@ -86,11 +88,14 @@ class SkinLookup(nn.Module):
         fixed = next(self.reflectance.parameters(), None) is None
         return self.table if fixed else self._tabulate()
 
-    def _tabulate(self) -> Float[Tensor, "mel blood wavelength"]:
+    def _tabulate(
+        self, nuisance: Nuisance | None = None
+    ) -> Float[Tensor, "*batch mel blood wavelength"]:
         f_mel, f_blood = (self.fractions(axis) for axis in (0, 1))
-        inner = self.reflectance.bands(f_mel[:, None], f_blood[None, :])
-        rows = _extrapolate_ends(inner)
-        return _extrapolate_ends(rows.transpose(0, 1)).transpose(0, 1).contiguous()
+        if nuisance is not None:
+            nuisance = Nuisance(*(deviation[..., None, None] for deviation in nuisance))
+        inner = self.reflectance.bands(f_mel[:, None], f_blood[None, :], nuisance)
+        return _extrapolate_ends(_extrapolate_ends(inner, -3), -2)
 
     def _axis(self, axis: int) -> PigmentAxis:
         """Axis from 0 to 1, half a node after the first node of the table."""
@@ -112,16 +117,23 @@ class SkinLookup(nn.Module):
         )
 
     def colours(
-        self, matrix: Float[Tensor, "*batch wavelength 3"]
+        self, matrix: Float[Tensor, "*batch wavelength 3"], nuisance: Nuisance | None = None
     ) -> Float[Tensor, "*batch 3 mel blood"]:
-        """Compute tables of linear RGB, one for each spectrum-to-RGB matrix.
+        """Compute tables of linear RGB, one for each image.
+
+        With deviations the spectra are computed for each image, in the time that the closed form
+        takes for as many pixels as the table has nodes.
 
         Args:
             matrix: Maps from reflectance to linear RGB, as `SpectralCamera.matrix`.
+            nuisance: Deviations of each image's skin from the preset [*batch]; None: none.
 
         Returns:
             Linear RGB at the nodes.
         """
+        if nuisance is not None:
+            tables = self._tabulate(nuisance).to(matrix)
+            return apply_matrix(tables, matrix).movedim(-1, -3)
         spectra = self.spectra().to(matrix)
         # One product for the whole batch: a batched one would copy the spectra for each image.
         flat = matrix.mT.reshape(-1, matrix.shape[-2]) @ spectra.flatten(0, 1).mT
@@ -180,14 +192,16 @@ class SkinLookup(nn.Module):
         return logarithm.mul_(per_node * scale).add_(per_node * (shift + 0.5) - 1)
 
 
-def _extrapolate_ends(values: Float[Tensor, "nodes *rest"]) -> Float[Tensor, "nodes *rest"]:
-    """Values at all nodes from those at 0, the inner nodes and 1.
+def _extrapolate_ends(values: Float[Tensor, "*shape"], axis: int) -> Float[Tensor, "*shape"]:
+    """Values at all nodes of an axis from those at 0, the inner nodes and 1.
 
     The first and the last cell are lines through their inner node and their middle, so that
     nothing is evaluated outside [0, 1].
     """
-    first, last = 2 * values[:1] - values[1:2], 2 * values[-1:] - values[-2:-1]
-    return torch.cat([first, values[1:-1], last])
+    low, second = values.narrow(axis, 0, 1), values.narrow(axis, 1, 1)
+    high, last = values.narrow(axis, -1, 1), values.narrow(axis, -2, 1)
+    inner = values.narrow(axis, 1, values.shape[axis] - 2)
+    return torch.cat([2 * low - second, inner, 2 * high - last], axis)
 
 
 def _refresh(lookup: SkinLookup, _: Any) -> None:

@@ -13,6 +13,7 @@ from torch.func import functional_call
 
 from skinnet.physics.capture import Capture
 from skinnet.physics.decoder import SkinDecoder
+from skinnet.physics.nuisance import Nuisance
 from skinnet.physics.optics import PRESETS, SkinOptics
 from tests import oracle
 
@@ -44,6 +45,46 @@ def test_modes_agree_over_the_unit_square(
     f = [torch.cat([m, m**4], -1) for m in maps(4, 64, 32, seed=seed)]
     fast, bands = (SkinDecoder(preset, fast=fast, dtype=D) for fast in (True, False))
     assert (fast(*f, capture=capture) - bands(*f, capture=capture)).abs().max() < 5e-4
+
+
+def deviations(*shape: int, seed: int = 0) -> Nuisance:
+    """About as much as skins differ from one another."""
+    rng = torch.Generator().manual_seed(seed)
+    scales = torch.tensor([0.7, 0.3, 0.2, 0.5], dtype=D)
+    return Nuisance(*(scales * torch.randn(*shape, 4, generator=rng, dtype=D)).unbind(-1))
+
+
+@pytest.mark.parametrize("preset", PRESETS)
+@pytest.mark.parametrize("shape", [(), (6,), (2, 3)])
+def test_modes_agree_for_skins_that_deviate(
+    random_capture: Callable[..., Capture], preset: str, shape: tuple[int, ...]
+) -> None:
+    decoder, nuisance = SkinDecoder(preset, dtype=D), deviations(*shape)
+    matrix = decoder.camera.matrix(random_capture(*shape))
+    f = [torch.cat([m, m**4], -1) for m in maps(*shape, 32, 16)]
+    fast = decoder.albedo(*f, matrix, nuisance)
+    decoder.fast = False
+    bands = decoder.albedo(*f, matrix, nuisance)
+    assert fast.shape == (*shape, 3, 32, 32) and (fast - bands).abs().max() < 5e-4
+    assert not torch.allclose(bands, decoder.albedo(*f, matrix), rtol=0.1, atol=0)
+
+
+@MODES
+def test_no_deviation_is_the_preset(random_capture: Callable[..., Capture], fast: bool) -> None:
+    decoder, f = SkinDecoder(fast=fast, dtype=D), maps(3, 4, 5)
+    matrix = decoder.camera.matrix(random_capture(3))
+    zeros = decoder.albedo(*f, matrix, Nuisance.zeros((3,), like=matrix))
+    assert torch.allclose(zeros, decoder.albedo(*f, matrix), rtol=0, atol=1e-12)
+
+
+@MODES
+def test_gradients_reach_the_deviations(random_capture: Callable[..., Capture], fast: bool) -> None:
+    decoder, f = SkinDecoder(fast=fast, dtype=D), maps(2, 1, 2)
+    matrix = decoder.camera.matrix(random_capture(2)).detach()
+    assert torch.autograd.gradcheck(
+        lambda *nuisance: decoder.albedo(*f, matrix, Nuisance(*nuisance)),
+        [0.1 * deviation.requires_grad_() for deviation in deviations(2)],
+    )
 
 
 @pytest.mark.parametrize("scale", [(1.0, 1.0), (0.4, 0.07)], ids=["unit square", "skin"])
