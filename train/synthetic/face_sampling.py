@@ -6,6 +6,7 @@ from jaxtyping import Float
 from numpy.typing import ArrayLike
 from torch import Tensor
 
+from skinnet.physics import Nuisance
 from train.synthetic.scene import (
     CHART_SIZE,
     MOLES,
@@ -91,7 +92,8 @@ def _sample_skin(rng: np.random.Generator, f_mel: float) -> SkinParameters:
     )
     bump = rng.uniform(0.01, 0.07) * rng.standard_normal((2, *CHART_SIZE), np.float32)
     none = torch.tensor(0.0)
-    return SkinParameters(melanin, hemoglobin, none, torch.from_numpy(bump), sample_specular(rng))
+    relief, specular = torch.from_numpy(bump), sample_specular(rng)
+    return SkinParameters(melanin, hemoglobin, none, relief, specular, Nuisance.zeros())
 
 
 def sample_regions(

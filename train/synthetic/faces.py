@@ -15,6 +15,7 @@ from train.preset import check_preset
 from train.stream import StreamLoader, count_seen_samples
 from train.synthetic.head_cache import SPLITS, load_or_cast_heads
 from train.synthetic.head_cast import HeadCast
+from train.synthetic.measured_skins import MeasuredSkins
 from train.synthetic.model_skins import ModelSkins, apply_model_skin, load_model_skins
 from train.synthetic.renderer import render
 from train.synthetic.scene import HeadBuffers, SceneParameters, map_tensors
@@ -38,6 +39,8 @@ class SyntheticScenes(Dataset[SceneParameters]):
         skins: Skins of a hybrid model, one of which half of the faces then have. All else in the
             scenes is the same with skins and without.
         domain_randomised: As in `sample_scene`; for training alone.
+        measured: Blood and nuisance of measured skins; None: blood is uniform in its logarithm, and
+            all skins are those of the preset.
     """
 
     def __init__(
@@ -48,8 +51,10 @@ class SyntheticScenes(Dataset[SceneParameters]):
         seed: int,
         skins: ModelSkins | None = None,
         domain_randomised: bool = False,
+        measured: MeasuredSkins | None = None,
     ) -> None:
         self.heads, self.samples, self.skins = heads, samples, skins
+        self.measured = measured
         self.domain_randomised = domain_randomised
         self.key = (seed, SPLITS[split], 7)
 
@@ -61,10 +66,13 @@ class SyntheticScenes(Dataset[SceneParameters]):
         head = map_tensors(lambda values: values[number], self.heads)
         rng = np.random.default_rng([*self.key, index])
         scene = sample_scene(rng, head, self.domain_randomised)
-        if self.skins is None:
-            return scene
-        rng = np.random.default_rng([*self.key, index, 1])
-        return scene._replace(face=apply_model_skin(scene.face, rng, self.skins))
+        face = scene.face
+        if self.measured is not None:
+            face = self.measured.apply(face, np.random.default_rng([*self.key, index, 2]))
+        if self.skins is not None:
+            rng = np.random.default_rng([*self.key, index, 1])
+            face = apply_model_skin(face, rng, self.skins)
+        return scene._replace(face=face)
 
 
 class SyntheticFaces(LightningDataModule):
@@ -89,7 +97,8 @@ class SyntheticFaces(LightningDataModule):
         skins: .npz of `python -m train.synthetic.skins` or `examples/london.py`: skins sampled from
             a hybrid model, one of which half of the faces then have. Without it all skins are
             painted.
-        optics: Preset of the skin's optical constants, which must be that of the model.
+        optics: Preset of the skin's optical constants, which must be that of the model. With
+            `measured`, each face has the blood and the nuisance of a skin of `SkinPrior`.
         seed: Seed of everything that is sampled.
         workers: Processes that cast heads and sample scenes; 0 does both in the training process.
     """
@@ -120,6 +129,8 @@ class SyntheticFaces(LightningDataModule):
         self.skins_file = None if skins is None else Path(skins)
         self.skins: ModelSkins | None = None
         self.optics, self.decoder = optics, SkinDecoder(optics)
+        # The prior belongs to this preset; the others have none.
+        self.measured = MeasuredSkins() if optics == "measured" else None
         self.buffers: dict[str, HeadBuffers] = {}
 
     @property
@@ -163,7 +174,7 @@ class SyntheticFaces(LightningDataModule):
         """Load training scenes in epochs of that many steps, from the step of the trainer on."""
         samples = max(steps, 1) * self.batch_size
         scenes = SyntheticScenes(
-            self.buffers["train"], "train", samples, self.seed, self.skins, domain_randomised=True
+            self.buffers["train"], "train", samples, self.seed, self.skins, True, self.measured
         )
         seen = partial(count_seen_samples, trainer, self.batch_size)
         return StreamLoader(scenes, self.batch_size, samples, seen, self.workers)
@@ -187,6 +198,11 @@ class SyntheticFaces(LightningDataModule):
 
     def _load_fixed(self, split: str) -> DataLoader[SceneParameters]:
         scenes = SyntheticScenes(
-            self.buffers[split], split, self.samples[split], self.seed, self.skins
+            self.buffers[split],
+            split,
+            self.samples[split],
+            self.seed,
+            self.skins,
+            measured=self.measured,
         )
         return DataLoader(scenes, self.batch_size, num_workers=self.workers)

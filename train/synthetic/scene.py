@@ -9,7 +9,7 @@ from typing import NamedTuple, TypeVar
 from jaxtyping import Float, Float16, Int8, Int64, UInt8
 from torch import Tensor
 
-from skinnet.physics import LIGHTS
+from skinnet.physics import LIGHTS, Nuisance
 
 CHART_SIZE = (168, 208)
 """Rows and columns of the charts that faces are painted on."""
@@ -64,7 +64,8 @@ class SkinParameters(NamedTuple):
     """The skin itself.
 
     `has_model_skin` is 1 where the pigments include a skin of a hybrid model, otherwise 0. `bump`
-    holds the gradients of the skin's relief to the right and upwards.
+    holds the gradients of the skin's relief to the right and upwards. `nuisance` is what the skin
+    has besides pigments; zero is the preset's skin.
     """
 
     melanin: PigmentParameters
@@ -72,6 +73,7 @@ class SkinParameters(NamedTuple):
     has_model_skin: Float[Tensor, "*batch"]
     bump: Float[Tensor, "*batch 2 rows columns"]
     specular: SpecularParameters
+    nuisance: Nuisance
 
 
 class MarkParameters(NamedTuple):
