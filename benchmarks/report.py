@@ -4,6 +4,7 @@ import argparse
 import json
 import sys
 from collections.abc import Callable, Iterator, Mapping
+from pathlib import Path
 from typing import Any
 
 from skinnet.errors import InputError
@@ -12,9 +13,10 @@ Results = dict[str, Any]
 
 
 def main(
-    measure: Callable[[], Results],
+    measure: Callable[..., Results],
     description: str,
     layout: Callable[[Results], str] | None = None,
+    paths: Mapping[str, str] | None = None,
 ) -> None:
     """Measure, then print the figures.
 
@@ -25,12 +27,17 @@ def main(
         description: Help text of the command.
         layout: Makes a table of the figures; without it each has a line of its own. `--json` prints
             one object instead.
+        paths: Help text of each option that takes a path, by its name: `--NAME PATH` is the keyword
+            `NAME` of `measure`, and None where it is not given.
     """
     parser = argparse.ArgumentParser(description=description)
     parser.add_argument("--json", action="store_true", help="print one JSON object")
-    as_json = parser.parse_args().json
+    for name, text in (paths or {}).items():
+        parser.add_argument(f"--{name}", type=Path, metavar="PATH", help=text)
+    given = vars(parser.parse_args())
+    as_json = given.pop("json")
     try:
-        results = measure()
+        results = measure(**given)
     except InputError as error:
         print(f"\n{error}", file=sys.stderr)
         sys.exit(2)

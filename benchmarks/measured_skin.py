@@ -1,0 +1,183 @@
+"""Scores of the preset `measured` and of `SkinPrior` on spectra that neither was fitted to."""
+
+from collections.abc import Callable, Iterable, Iterator
+from typing import NamedTuple
+
+import torch
+from jaxtyping import Float
+from torch import Tensor
+
+from benchmarks.colour_differences import (
+    LIGHTS,
+    compute_differences,
+    compute_typology_angles,
+    fill_missing,
+)
+from benchmarks.least_squares import compute_rmse, fit, summarise
+from benchmarks.recovered_spectra import (
+    ColourPosterior,
+    FittedSkin,
+    SkinNodes,
+    compute_interval,
+    load_d65_matrix,
+    make_exact,
+)
+from benchmarks.report import Results
+from benchmarks.typology import GROUPS, find_group
+from benchmarks.whole_spectra import SkinFit, fit_skins
+
+Refit = Callable[[Tensor, Tensor], FittedSkin]
+"""Fits constants and prior to spectra of forearms and of ISSA."""
+
+BOUNDS = ((0.0, 0.6), (1e-3, 0.3))
+"""Bounds of f_mel and f_blood; where depth follows blood, skin without blood has no depth."""
+
+BLOCKS, SEED = 8, 0
+
+
+class SkinScores(NamedTuple):
+    """What is measured of each spectrum.
+
+    Attributes:
+        angle: Individual typology angle, degrees.
+        rmse: Error of the fit of two numbers.
+        fractions: f_mel and f_blood of that fit.
+        rgb_rmse: Error of the spectrum that is recovered from its colour.
+        delta_e: CIEDE2000 of that spectrum, once its colour under D65 is exact.
+        delta_e_uncorrected: The same without the correction.
+        inside: Whether the fit of melanin, blood and nuisance lies in the colour's 90 % interval.
+        share: The share of that fit's own distribution which does.
+    """
+
+    angle: Float[Tensor, "people"]
+    rmse: Float[Tensor, "people"]
+    fractions: Float[Tensor, "people 2"]
+    rgb_rmse: Float[Tensor, "people"]
+    delta_e: Float[Tensor, "people light"]
+    delta_e_uncorrected: Float[Tensor, "people light"]
+    inside: Float[Tensor, "people 2"]
+    share: Float[Tensor, "people 2"]
+
+
+def score_skin(skin: FittedSkin, target: Float[Tensor, "people wavelength"]) -> SkinScores:
+    """Score what was fitted on other spectra; bands that are NaN are missing."""
+    rmse, fractions = score_two_numbers(skin, target)
+    whole = fill_missing(target)
+    nodes, rgb = SkinNodes(skin), whole @ load_d65_matrix()
+    posterior = nodes.infer(rgb)
+    inside, share = _score_intervals(nodes, posterior, fit_skins(skin, target))
+    return SkinScores(
+        angle=compute_typology_angles(whole),
+        rmse=rmse,
+        fractions=fractions,
+        rgb_rmse=compute_rmse(posterior.spectra, target),
+        delta_e=compute_differences(make_exact(posterior.spectra, rgb), whole),
+        delta_e_uncorrected=compute_differences(posterior.spectra, whole),
+        inside=inside,
+        share=share,
+    )
+
+
+def _score_intervals(
+    nodes: SkinNodes, posterior: ColourPosterior, best: SkinFit
+) -> tuple[Tensor, Tensor]:
+    """Return whether each fit lies in the colour's interval, and the share of it that does."""
+    deviation = best.covariance.diagonal(dim1=1, dim2=2).sqrt()
+    inside, share = [], []
+    axes = ((nodes.f_mel, posterior.f_mel), (nodes.f_blood, posterior.f_blood))
+    for i, (node, weights) in enumerate(axes):
+        low, high = (end.log() - best.skins[:, i] for end in compute_interval(node, weights))
+        inside.append(((low <= 0) & (high >= 0)).double())
+        normal = torch.special.ndtr
+        share.append(normal(high / deviation[:, i]) - normal(low / deviation[:, i]))
+    return torch.stack(inside, -1), torch.stack(share, -1)
+
+
+def score_two_numbers(skin: FittedSkin, target: Tensor) -> tuple[Tensor, Tensor]:
+    """Fit melanin and blood where depth follows blood; return errors and fractions."""
+
+    def model(f_mel: Tensor, f_blood: Tensor) -> Tensor:
+        return skin.predict(f_mel, f_blood, skin.prior.typical_nuisance(f_blood))
+
+    fractions = fit(model, target, BOUNDS)
+    return compute_rmse(model(*fractions.T), target), fractions
+
+
+def cross_validate(
+    refit: Refit,
+    forearms: Float[Tensor, "people wavelength"],
+    issa: Float[Tensor, "record wavelength"],
+) -> tuple[SkinScores, SkinScores]:
+    """Score each half of both sets with what is fitted to the other halves.
+
+    Forearms are halved at random, one person each; ISSA by alternating blocks of neighbouring
+    records, because one person may have several.
+    """
+    people = torch.randperm(len(forearms), generator=torch.Generator().manual_seed(SEED)).chunk(2)
+    blocks = torch.arange(len(issa)).tensor_split(BLOCKS)
+    records = (torch.cat(blocks[::2]), torch.cat(blocks[1::2]))
+    scores = []
+    for ours, theirs in ((0, 1), (1, 0)):
+        skin = refit(forearms[people[ours]], issa[records[ours]])
+        scores.append(
+            (score_skin(skin, forearms[people[theirs]]), score_skin(skin, issa[records[theirs]]))
+        )
+    first, second = zip(*scores, strict=True)
+    return join(first), join(second)
+
+
+def join(scores: Iterable[SkinScores]) -> SkinScores:
+    """Join the scores of several sets of spectra."""
+    return SkinScores(*(torch.cat(values) for values in zip(*scores, strict=True)))
+
+
+def summarise_two_numbers(scores: SkinScores) -> Results:
+    """Summarise the fits of two numbers, and all fractions."""
+    f_mel, f_blood = scores.fractions.quantile(0.5, dim=0).tolist()
+    return summarise(scores.rmse) | {"f_mel": f_mel, "f_blood": f_blood}
+
+
+def summarise_colour_alone(scores: SkinScores) -> Results:
+    """Summarise what is recovered from colour alone."""
+    return summarise(scores.rgb_rmse) | {
+        "delta_e": _name_lights(scores.delta_e),
+        "delta_e_uncorrected": _name_lights(scores.delta_e_uncorrected),
+    }
+
+
+def _name_lights(differences: Tensor) -> Results:
+    return dict(zip(LIGHTS, differences.quantile(0.5, dim=0).tolist(), strict=True))
+
+
+def summarise_groups(scores: SkinScores) -> Results:
+    """Summarise the fits of two numbers by the group of the typology angle."""
+    return {
+        name: {"count": len(part.angle)} | summarise_two_numbers(part)
+        for name, part in _split_groups(scores)
+    }
+
+
+def summarise_coverage(scores: SkinScores) -> Results:
+    """Summarise by group how many fits lie in the 90 % intervals.
+
+    `f_mel` and `f_blood` count the most probable skins. A fit is uncertain itself, and is drawn
+    towards the prior's mean; `f_mel_share` and `f_blood_share` count its whole distribution.
+    """
+    return {
+        name: {"count": len(part.angle)}
+        | _name_fractions(part.inside.mean(0))
+        | _name_fractions(part.share.mean(0), "_share")
+        for name, part in _split_groups(scores)
+    }
+
+
+def _name_fractions(pair: Tensor, suffix: str = "") -> Results:
+    return {f"f_mel{suffix}": pair[0].item(), f"f_blood{suffix}": pair[1].item()}
+
+
+def _split_groups(scores: SkinScores) -> Iterator[tuple[str, SkinScores]]:
+    names = [find_group(angle) for angle in scores.angle.tolist()]
+    for name in GROUPS:
+        mask = torch.tensor([name == other for other in names])
+        if mask.any():
+            yield name, SkinScores(*(values[mask] for values in scores))

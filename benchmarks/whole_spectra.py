@@ -1,0 +1,149 @@
+"""What a whole measured spectrum says about its skin: the most probable one under `SkinPrior`."""
+
+from typing import NamedTuple
+
+import torch
+from jaxtyping import Float
+from torch import Tensor
+
+from benchmarks.recovered_spectra import FittedSkin
+from skinnet.physics import Nuisance
+
+STEPS, DELTA = 50, 1e-4
+LOW, HIGH = -5.5, -0.2
+"""Ends of ln f_mel and ln f_blood."""
+
+
+class SkinFit(NamedTuple):
+    """Most probable skins given their spectra, and the normal approximation about them.
+
+    Attributes:
+        skins: ln f_mel, ln f_blood, thickness, scattering, oxygenation, baseline.
+        covariance: Of the skins.
+    """
+
+    skins: Float[Tensor, "people 6"]
+    covariance: Float[Tensor, "people 6 6"]
+
+
+class _Expansion(NamedTuple):
+    """Logarithm of the posterior at a skin, its gradient, and minus its expected Hessian."""
+
+    value: Float[Tensor, "people"]
+    gradient: Float[Tensor, "people 6"]
+    information: Float[Tensor, "people 6 6"]
+
+
+def fit_skins(
+    skin: FittedSkin,
+    target: Float[Tensor, "people wavelength"],
+    start: Float[Tensor, "people 6"] | None = None,
+    steps: int = STEPS,
+) -> SkinFit:
+    """Fit melanin, blood and nuisance to each spectrum, by Fisher scoring with damping.
+
+    What the prior leaves over at each band is the noise. Bands that are NaN are missing.
+
+    Args:
+        skin: Constants and prior.
+        target: Measured spectra.
+        start: Skins to start from; None: the nearest of a few tones.
+        steps: At most as many.
+    """
+    z = _choose_start(skin, target) if start is None else start
+    here, damping = _expand(skin, z, target), torch.full((len(z),), 1e-3, dtype=torch.float64)
+    for _ in range(steps):
+        ridge = damping[:, None] * here.information.diagonal(dim1=1, dim2=2)
+        step = torch.linalg.solve(here.information + torch.diag_embed(ridge), here.gradient)
+        trial = torch.cat([(z + step)[:, :2].clamp(LOW, HIGH), (z + step)[:, 2:]], 1)
+        there = _expand(skin, trial, target)
+        better = there.value > here.value
+        z = torch.where(better[:, None], trial, z)
+        here = _merge(better, there, here)
+        damping = torch.where(better, damping / 5, damping * 5).clamp(1e-9, 1e9)
+        if step.abs().max() < 1e-5:
+            break
+    return SkinFit(z, torch.linalg.inv(here.information))
+
+
+def _choose_start(skin: FittedSkin, target: Tensor) -> Tensor:
+    tones = torch.linspace(-4, -0.7, 25, dtype=torch.float64)
+    f_mel, f_blood = tones.exp(), torch.full_like(tones, 0.045)
+    mean, _, _ = skin.prior.condition(f_mel)
+    spectra = skin.predict(f_mel, f_blood, mean)
+    nearest = (target[:, None] - spectra).square().nanmean(-1).argmin(-1)
+    return torch.stack([tones, f_blood.log(), *mean], -1)[nearest]
+
+
+def _merge(better: Tensor, there: _Expansion, here: _Expansion) -> _Expansion:
+    value, gradient, information = (
+        torch.where(better.reshape(-1, *[1] * (old.ndim - 1)), new, old)
+        for new, old in zip(there, here, strict=True)
+    )
+    return _Expansion(value, gradient, information)
+
+
+def _expand(skin: FittedSkin, z: Tensor, target: Tensor) -> _Expansion:
+    parts = (
+        _expand_likelihood(skin, z, target),
+        _expand_nuisance(skin, z),
+        _expand_pigments(skin, z),
+    )
+    value, gradient, information = (sum(part) for part in zip(*parts, strict=True))
+    return _Expansion(value, gradient, information)
+
+
+def _expand_likelihood(skin: FittedSkin, z: Tensor, target: Tensor) -> _Expansion:
+    known = ~target.isnan()
+    S, dS = (_load_noise(skin, z[:, 0] + shift, known) for shift in (0.0, DELTA))
+    dS = (dS - S) / DELTA
+    here = _predict(skin, z)
+    unit = torch.eye(z.shape[-1], dtype=torch.float64)
+    J = torch.stack([(_predict(skin, z + DELTA * e) - here) / DELTA for e in unit], -1)
+    J, r = J * known[..., None], (target - here).nan_to_num(nan=0.0)
+    solved = torch.linalg.solve(S, torch.cat([J, r[..., None], dS], -1))
+    SJ, Sr, SdS = solved[..., :6], solved[..., 6], solved[..., 7:]
+    value = -0.5 * ((r * Sr).sum(-1) + torch.logdet(S))
+    gradient, information = (SJ.mT @ r[..., None])[..., 0], SJ.mT @ J
+    # The noise depends on melanin too.
+    trace = SdS.diagonal(dim1=1, dim2=2).sum(-1)
+    gradient[:, 0] += 0.5 * ((Sr[:, None] @ dS @ Sr[..., None])[:, 0, 0] - trace)
+    information[:, 0, 0] += 0.5 * (SdS * SdS.mT).sum((1, 2))
+    return _Expansion(value, gradient, information)
+
+
+def _predict(skin: FittedSkin, z: Tensor) -> Tensor:
+    f_mel, f_blood, *nuisance = z.unbind(-1)
+    return skin.predict(f_mel.exp(), f_blood.exp(), Nuisance(*nuisance))
+
+
+def _load_noise(skin: FittedSkin, tone: Tensor, known: Tensor) -> Tensor:
+    """Return what the prior leaves over, with a variance of one, for itself, at missing bands."""
+    _, _, leftover = skin.prior.condition(tone.exp())
+    both = known[:, :, None] & known[:, None, :]
+    return leftover * both + torch.diag_embed((~known).double())
+
+
+def _expand_nuisance(skin: FittedSkin, z: Tensor) -> _Expansion:
+    mean, covariance, _ = skin.prior.condition(z[:, 0].exp())
+    later, _, _ = skin.prior.condition((z[:, 0] + DELTA).exp())
+    e = z[:, 2:] - torch.stack(list(mean), -1)
+    slope = (torch.stack(list(later), -1) - torch.stack(list(mean), -1)) / DELTA
+    D = torch.cat(
+        [-slope[..., None], torch.zeros(len(z), 4, 1), torch.eye(4).expand(len(z), 4, 4)], -1
+    )
+    P = torch.linalg.inv(covariance)
+    Pe = (P @ e[..., None])[..., 0]
+    return _Expansion(-0.5 * (e * Pe).sum(-1), -(D.mT @ Pe[..., None])[..., 0], D.mT @ P @ D)
+
+
+def _expand_pigments(skin: FittedSkin, z: Tensor) -> _Expansion:
+    # As in expectation maximisation: a skin belongs to each component with some probability.
+    prior, x = skin.prior, z[:, None, :2]
+    normal = torch.distributions.MultivariateNormal(prior.means, prior.covariances)
+    log_joint = prior.weights.log() + normal.log_prob(x)
+    P = log_joint.softmax(-1)[..., None, None] * torch.linalg.inv(prior.covariances)
+    toward = (P @ (prior.means - x)[..., None]).sum(1)[..., 0]
+    gradient, information = torch.zeros_like(z), torch.zeros(len(z), 6, 6, dtype=z.dtype)
+    gradient[:, :2], information[:, :2, :2] = toward, P.sum(1)
+    return _Expansion(log_joint.logsumexp(-1), gradient, information)
