@@ -72,7 +72,9 @@ def render(scene: SceneParameters, decoder: SkinDecoder, split: str = "train") -
     # The wall has its own light.
     other = other * torch.where(label > 0, shading.diffuse, 1.0)
     other = (other + shading.specular * (label > 0)) * white
-    albedo = decoder.albedo(melanin, hemoglobin, matrix, scene.face.skin.nuisance)
+    nuisance = scene.face.skin.nuisance
+    varied = any(bool(deviation.any()) for deviation in nuisance)
+    albedo = decoder.albedo(melanin, hemoglobin, matrix, nuisance if varied else None)
     visible = VisibleSkin(melanin, hemoglobin, albedo, share, shading)
     return develop(scene.camera, visible, (1 - share) * other, white, capture)
 
