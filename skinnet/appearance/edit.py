@@ -5,10 +5,14 @@ from dataclasses import dataclass, replace
 import numpy as np
 from jaxtyping import Float, Float32
 
+from skinnet.appearance.colour import SkinColour
 from skinnet.appearance.skin_texture import SkinTexture
 from skinnet.errors import InputError
 
 _LARGEST_SCALE = 10.0
+
+_DARKEST = 1e-6
+"""Sum of linear R, G and B below which skin is as good as black."""
 
 
 @dataclass(frozen=True)
@@ -67,33 +71,41 @@ class PigmentEdit:
 
 def edit_texture(
     texture: SkinTexture,
+    colour: SkinColour,
     melanin: PigmentEdit,
     hemoglobin: PigmentEdit,
     mask: Float[np.ndarray, "size size"] | None = None,
 ) -> SkinTexture:
-    """Edit the pigments of a texture; its offset, which is not skin, stays the same.
+    """Edit the pigments of a texture; its offset darkens with the skin and never grows.
+
+    The offset is a difference of colours that was found at one lightness. Added to skin that an
+    edit makes darker, it would outweigh the skin and tint it, so it is multiplied by the ratio of
+    the model's R + G + B after and before. On skin that becomes lighter it stays: multiplied as
+    well, an error in a dark blue channel would be seen several times larger.
 
     Args:
         texture: Maps to edit; they are not changed in place.
+        colour: Light, camera and calibration of the maps.
         melanin: Edit of f_mel.
         hemoglobin: Edit of f_blood.
         mask: Weight of the edit at each texel, in [0, 1]; None: 1 everywhere.
 
     Returns:
-        The edited texture.
+        The edited texture; texels whose fractions stay the same are exactly the same.
 
     Raises:
         InputError: If the mask has another size than the maps.
 
     Source:
-        Section 6 and Figure 6 of Alotaibi & Smith 2017.
+        Section 6 and Figure 6 of Alotaibi & Smith 2017, where the offset stays the same.
 
     Example:
         >>> level, known = np.full((2, 2), 0.04, np.float32), np.ones((2, 2), bool)
-        >>> face = SkinTexture(level, level, np.zeros((2, 2, 3), np.float32), known)
-        >>> flushed = edit_texture(face, PigmentEdit(), PigmentEdit(scale=2.0))
-        >>> round(float(flushed.f_blood[0, 0]), 3), round(float(flushed.f_mel[0, 0]), 3)
-        (0.08, 0.04)
+        >>> face = SkinTexture(level, level, np.full((2, 2, 3), 0.01, np.float32), known)
+        >>> colour = SkinColour(nodes=(32, 32))
+        >>> tanned = edit_texture(face, colour, PigmentEdit(scale=4.0), PigmentEdit())
+        >>> round(float(tanned.f_mel[0, 0]), 3), bool((tanned.offset < face.offset).all())
+        (0.16, True)
     """
     weight = np.ones_like(texture.f_mel) if mask is None else mask.astype(np.float32)
     if weight.shape != texture.f_mel.shape:
@@ -101,11 +113,19 @@ def edit_texture(
             f"The mask is {weight.shape[1]} x {weight.shape[0]} and the maps of {texture.name} are "
             f"{len(texture.mask)} x {len(texture.mask)}; draw it at their size."
         )
-    maps = {
-        name: (1 - weight) * fraction + weight * edit(fraction)
-        for name, fraction, edit in (
-            ("f_mel", texture.f_mel, melanin),
-            ("f_blood", texture.f_blood, hemoglobin),
-        )
-    }
-    return replace(texture, **maps)
+    # Written as a change, so that a texel whose fraction stays the same keeps its last bit.
+    edited = replace(
+        texture,
+        f_mel=texture.f_mel + weight * (melanin(texture.f_mel) - texture.f_mel),
+        f_blood=texture.f_blood + weight * (hemoglobin(texture.f_blood) - texture.f_blood),
+    )
+    before, after = (_sum_channels(one, colour) for one in (texture, edited))
+    ratio = (np.maximum(after, _DARKEST) / np.maximum(before, _DARKEST)).clip(0, 1)
+    return replace(edited, offset=texture.offset * ratio[..., None].astype(np.float32))
+
+
+def _sum_channels(texture: SkinTexture, colour: SkinColour) -> Float32[np.ndarray, "size size"]:
+    """Sum linear R, G and B of the skin without its offset."""
+    bare = replace(texture, offset=np.zeros_like(texture.offset))
+    total: Float32[np.ndarray, "size size"] = bare.albedo(colour).sum(-1)
+    return total

@@ -68,7 +68,7 @@ def run(config: Namespace) -> int:
         PigmentEdit(config[name], config[f"{name}_add"], config[f"{name}_paint"])
         for name in _PIGMENTS
     )
-    after = edit_texture(before, melanin, hemoglobin, _read_mask(config.mask))
+    after = edit_texture(before, colour, melanin, hemoglobin, _read_mask(config.mask))
     name = config.maps.name.removesuffix(MAPS_END).removesuffix(".npz")
     stem = make_output_folder(config.output or config.maps.parent) / f"{name}_edited"
     save_maps(add_end(stem, MAPS_END), after, colour)

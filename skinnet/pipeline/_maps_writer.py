@@ -83,8 +83,8 @@ def draw_maps_panel(
     The panel follows Figures 4 and 6 of Alotaibi & Smith 2017.
     """
     settings, scene = relight.RelightSettings(size=relight.TILE_SIZE), Scene(face)
-    flushed = edit_texture(texture, PigmentEdit(), PigmentEdit(_FLUSH))
-    tanned = edit_texture(texture, PigmentEdit(_TAN), PigmentEdit())
+    flushed = edit_texture(texture, colour, PigmentEdit(), PigmentEdit(_FLUSH))
+    tanned = edit_texture(texture, colour, PigmentEdit(_TAN), PigmentEdit())
     faces = {
         "relit": texture,
         f"hemoglobin x {_FLUSH:g}": flushed,
