@@ -7,6 +7,7 @@ import torch
 from jaxtyping import Float
 from torch import Tensor
 
+from benchmarks.skin_spectra import fill_bands
 from skinnet.physics import WAVELENGTHS
 
 with warnings.catch_warnings():
@@ -18,16 +19,6 @@ LIGHTS = ("A", "FL11", "LED-B3")
 
 STEP = 5
 """Steps of the integration in nm: those of the CIE's table of fluorescent lamps."""
-
-
-def fill_missing(
-    reflectance: Float[Tensor, "people wavelength"],
-) -> Float[Tensor, "people wavelength"]:
-    """Give missing bands, which are NaN, the value of the last band before them that is known."""
-    filled = reflectance.clone()
-    for band in range(1, filled.shape[-1]):
-        filled[:, band] = filled[:, band].where(~filled[:, band].isnan(), filled[:, band - 1])
-    return filled
 
 
 def compute_lab(
@@ -44,7 +35,7 @@ def compute_lab(
     power = colour.SDS_ILLUMINANTS[light].copy().align(shape).values
     weights = observer * power[:, None] / (observer[:, 1] @ power)
     between = np.stack([np.interp(fine, nm, unit) for unit in np.eye(len(nm))])
-    XYZ = fill_missing(reflectance).double().numpy() @ between @ weights
+    XYZ = fill_bands(reflectance).double().numpy() @ between @ weights
     white = colour.XYZ_to_xy(weights.sum(0))
     return torch.from_numpy(np.asarray(colour.XYZ_to_Lab(XYZ, white), dtype=np.float64))
 

@@ -11,7 +11,6 @@ from benchmarks.colour_differences import (
     LIGHTS,
     compute_differences,
     compute_typology_angles,
-    fill_missing,
 )
 from benchmarks.least_squares import compute_rmse, fit, summarise
 from benchmarks.recovered_spectra import (
@@ -23,6 +22,7 @@ from benchmarks.recovered_spectra import (
     make_exact,
 )
 from benchmarks.report import Results
+from benchmarks.skin_spectra import fill_bands, halve_forearms, halve_issa
 from benchmarks.typology import GROUPS, find_group
 from benchmarks.whole_spectra import SkinFit, fit_skins
 
@@ -31,8 +31,6 @@ Refit = Callable[[Tensor, Tensor], FittedSkin]
 
 BOUNDS = ((0.0, 0.6), (1e-3, 0.3))
 """Bounds of f_mel and f_blood; where depth follows blood, skin without blood has no depth."""
-
-BLOCKS, SEED = 8, 0
 
 
 class SkinScores(NamedTuple):
@@ -62,7 +60,7 @@ class SkinScores(NamedTuple):
 def score_skin(skin: FittedSkin, target: Float[Tensor, "people wavelength"]) -> SkinScores:
     """Score what was fitted on other spectra; bands that are NaN are missing."""
     rmse, fractions = score_two_numbers(skin, target)
-    whole = fill_missing(target)
+    whole = fill_bands(target)
     nodes, rgb = SkinNodes(skin), whole @ load_d65_matrix()
     posterior = nodes.infer(rgb)
     inside, share = _score_intervals(nodes, posterior, fit_skins(skin, target))
@@ -113,9 +111,7 @@ def cross_validate(
     Forearms are halved at random, one person each; ISSA by alternating blocks of neighbouring
     records, because one person may have several.
     """
-    people = torch.randperm(len(forearms), generator=torch.Generator().manual_seed(SEED)).chunk(2)
-    blocks = torch.arange(len(issa)).tensor_split(BLOCKS)
-    records = (torch.cat(blocks[::2]), torch.cat(blocks[1::2]))
+    people, records = halve_forearms(), halve_issa()
     scores = []
     for ours, theirs in ((0, 1), (1, 0)):
         skin = refit(forearms[people[ours]], issa[records[ours]])
@@ -132,7 +128,11 @@ def join(scores: Iterable[SkinScores]) -> SkinScores:
 
 
 def summarise_two_numbers(scores: SkinScores) -> Results:
-    """Summarise the fits of two numbers, and all fractions."""
+    """Summarise the fits of two numbers, for all and by group."""
+    return _summarise_fits(scores) | {"groups": summarise_groups(scores)}
+
+
+def _summarise_fits(scores: SkinScores) -> Results:
     f_mel, f_blood = scores.fractions.quantile(0.5, dim=0).tolist()
     return summarise(scores.rmse) | {"f_mel": f_mel, "f_blood": f_blood}
 
@@ -152,7 +152,7 @@ def _name_lights(differences: Tensor) -> Results:
 def summarise_groups(scores: SkinScores) -> Results:
     """Summarise the fits of two numbers by the group of the typology angle."""
     return {
-        name: {"count": len(part.angle)} | summarise_two_numbers(part)
+        name: {"count": len(part.angle)} | _summarise_fits(part)
         for name, part in _split_groups(scores)
     }
 

@@ -1,5 +1,6 @@
 """Spectra recovered from their colour alone: the posterior of skins under `SkinPrior`."""
 
+import math
 from typing import NamedTuple
 
 import numpy as np
@@ -100,7 +101,8 @@ def make_exact(
 ) -> Float[Tensor, "people wavelength"]:
     """Change spectra as little as possible, so that their colour under D65 is the given one."""
     matrix = load_d65_matrix()
-    return spectra + (rgb - spectra @ matrix) @ torch.linalg.pinv(matrix)
+    change: Tensor = torch.linalg.pinv(matrix)
+    return spectra + (rgb - spectra @ matrix) @ change
 
 
 def compute_interval(
@@ -121,7 +123,7 @@ def compute_interval(
 
 
 def _space(low: float, high: float, count: int) -> Float[Tensor, "node"]:
-    return torch.logspace(np.log10(low), np.log10(high), count, dtype=torch.float64)
+    return torch.linspace(math.log(low), math.log(high), count, dtype=torch.float64).exp()
 
 
 def _split_nuisance(prior: SkinPrior, f_mel: Tensor) -> tuple[Nuisance, Tensor, Tensor]:

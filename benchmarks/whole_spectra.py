@@ -84,13 +84,13 @@ def _merge(better: Tensor, there: _Expansion, here: _Expansion) -> _Expansion:
 
 
 def _expand(skin: FittedSkin, z: Tensor, target: Tensor) -> _Expansion:
-    parts = (
+    parts = zip(
         _expand_likelihood(skin, z, target),
         _expand_nuisance(skin, z),
         _expand_pigments(skin, z),
+        strict=True,
     )
-    value, gradient, information = (sum(part) for part in zip(*parts, strict=True))
-    return _Expansion(value, gradient, information)
+    return _Expansion(*(a + b + c for a, b, c in parts))
 
 
 def _expand_likelihood(skin: FittedSkin, z: Tensor, target: Tensor) -> _Expansion:

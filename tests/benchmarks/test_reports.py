@@ -2,74 +2,16 @@
 
 import json
 import sys
-from pathlib import Path
 
 import pytest
 import torch
 
-from benchmarks import appearance, calibration, decoder, lookup, report, spectra
+from benchmarks import appearance, calibration, decoder, lookup, report
 from benchmarks.biofacenet import BioFaceNetShape
-from skinnet.physics import PRESETS, SkinReflectance
+from benchmarks.recovered_spectra import load_d65_matrix
+from skinnet.physics import SkinReflectance
 
 pytestmark = pytest.mark.slow
-
-
-@pytest.fixture(scope="module")
-def found() -> report.Results:
-    return spectra.measure(radii=(0.0, 10e-4, 20e-4, 30e-4, 40e-4))
-
-
-def test_spectra_report_every_preset_and_every_comparison(found: report.Results) -> None:
-    assert set(found) == {
-        *PRESETS,
-        "split_half",
-        "rgb",
-        "rgb_up_to_scale",
-        "rgb_scale_near_one",
-        "pca",
-    }
-    for preset in PRESETS:
-        assert set(found[preset]) == {"median", "p95", "paper_range_median"}
-        assert 0 < found[preset]["median"] < found[preset]["p95"] < 1
-        assert found[preset]["median"] <= found[preset]["paper_range_median"]
-    assert set(found["pca"]) == {"1", "2", "3"}
-
-
-def test_spectra_reach_their_targets(found: report.Results) -> None:
-    assert found["calibrated"]["median"] <= 0.0170
-    assert found["paper"]["median"] <= 0.036
-    assert found["authors"]["median"] > 0.05 and found["printed"]["median"] > 0.1
-    assert found["rgb"]["median"] <= 0.021 and found["rgb"]["p95"] <= 0.030
-    for name in ("rgb_up_to_scale", "rgb_scale_near_one"):
-        assert found[name]["median"] <= 0.019 and found[name]["p95"] <= 0.028
-
-
-def test_a_vessel_radius_chosen_on_other_people_is_as_good(found: report.Results) -> None:
-    half = found["split_half"]
-    assert half["median"] <= 0.0170 and half["worst_median"] <= 0.019
-    assert sum(half["r_um"].values()) == half["splits"]
-    assert all(15 <= float(radius) <= 40 for radius in half["r_um"])
-
-
-def test_principal_components_have_their_known_errors(found: report.Results) -> None:
-    expected = {"1": 0.0116, "2": 0.0074, "3": 0.0032}
-    assert found["pca"] == pytest.approx(expected, abs=1e-4)
-
-
-def test_fit_finds_what_was_rendered() -> None:
-    model = SkinReflectance(dtype=torch.float64).bands
-    rng = torch.Generator().manual_seed(0)
-    truth = torch.rand(20, 2, generator=rng, dtype=torch.float64) * torch.tensor([0.6, 0.3])
-    truth[0], truth[1] = torch.tensor([0.0, 0.3]), torch.tensor([0.01, 0.0])
-    assert torch.allclose(spectra.fit(model, model(*truth.T)), truth, atol=1e-6)
-
-
-def test_spectra_equal_the_shared_file(shared_data: Path) -> None:
-    shared = (shared_data / "spectra" / "nist_forearm_100.csv").read_text()
-    ours = (Path(spectra.__file__).parent / "data" / "nist_forearm_100.csv").read_text()
-    assert ours.startswith("# ") and "10.18434/M38597" in ours.splitlines()[0]
-    assert ours.split("\n", 1)[1] == shared
-    assert spectra.load_forearms().shape == (100, 33)
 
 
 @pytest.mark.skipif(sys.platform != "linux", reason="Resident peaks are read from /proc.")
@@ -132,7 +74,7 @@ def test_lookup_reports_its_figures() -> None:
 def test_the_map_of_the_lookup_has_no_equal_texels() -> None:
     skin, matrix = (
         lookup.SkinLookup(SkinReflectance(dtype=torch.float64)),
-        spectra.load_d65_matrix(),
+        load_d65_matrix(),
     )
     for rgb in lookup.render_face(skin, matrix, 128):
         assert rgb.dtype == torch.float32 and rgb.shape == (128, 128, 3)
