@@ -63,7 +63,7 @@ def score_skin(skin: FittedSkin, target: Float[Tensor, "people wavelength"]) -> 
     whole = fill_bands(target)
     nodes, rgb = SkinNodes(skin), whole @ load_d65_matrix()
     posterior = nodes.infer(rgb)
-    inside, share = _score_intervals(nodes, posterior, fit_skins(skin, target))
+    inside, share = _score_intervals(nodes, posterior, _fit_whole(skin, target))
     return SkinScores(
         angle=compute_typology_angles(whole),
         rmse=rmse,
@@ -74,6 +74,10 @@ def score_skin(skin: FittedSkin, target: Float[Tensor, "people wavelength"]) -> 
         inside=inside,
         share=share,
     )
+
+
+def _fit_whole(skin: FittedSkin, target: Tensor) -> SkinFit:
+    return fit_skins(skin._replace(prior=skin.reference or skin.prior), target)
 
 
 def _score_intervals(

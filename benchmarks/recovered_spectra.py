@@ -27,11 +27,16 @@ F_MEL, F_BLOOD, THICKNESSES = (0.008, 0.8, 120), (0.002, 0.4, 32), 5
 
 
 class FittedSkin(NamedTuple):
-    """What is fitted to measured spectra: constants, the instrument's surface, and the prior."""
+    """What is fitted to measured spectra: constants, the instrument's surface, and the prior.
+
+    The fits of whole spectra, whose distribution the prior is, have a broader prior, `reference`;
+    None: the prior itself.
+    """
 
     optics: SkinOptics
     r_surface: float
     prior: SkinPrior
+    reference: SkinPrior | None = None
 
     def predict(
         self,
@@ -142,9 +147,14 @@ def _linearise(
     skin: FittedSkin, f_mel: Tensor, f_blood: Tensor, nuisance: Nuisance
 ) -> tuple[Tensor, Tensor]:
     """Return spectra, and their derivatives by every nuisance but thickness."""
-    here, delta = skin.predict(f_mel, f_blood, nuisance), 1e-4
+    delta = 1e-4
+
+    def expect(nuisance: Nuisance) -> Tensor:
+        return skin.predict(f_mel, f_blood, nuisance) + skin.prior.leftover_mean(f_mel, nuisance)
+
+    here = expect(nuisance)
     J = [
-        (skin.predict(f_mel, f_blood, nuisance._replace(**{name: value + delta})) - here) / delta
+        (expect(nuisance._replace(**{name: value + delta})) - here) / delta
         for name, value in list(nuisance._asdict().items())[1:]
     ]
     return here, torch.stack(J, -1)

@@ -1,6 +1,12 @@
-"""The distribution of skins, fitted to spectra by expectation maximisation."""
+"""The distribution of skins over people, fitted to their spectra in two steps.
 
-from collections.abc import Mapping
+First each spectrum is fitted by melanin, blood and nuisance. How far the nuisance varies, and how
+well the model fits at each tone, decides how the fit weighs them, and is found with the fits
+themselves by expectation maximisation; its result is the reference. Then the distribution of these
+fits, and of what they leave over, is described: that is the prior.
+"""
+
+import math
 from typing import Any, NamedTuple
 
 import torch
@@ -12,11 +18,15 @@ from torch import Tensor
 from skinnet.physics import Nuisance, SkinOptics, SkinPrior
 from skinnet.physics.prior import TYPICAL_F_MEL
 
-FOREARMS = 0.3
+Record = dict[str, Any]
+
+FOREARMS = 0.5
 """Weight of the forearms; the skins of many peoples have the rest."""
 
-TONES, WIDTH = (-3.0, -2.55, -2.1, -1.65, -1.2), 0.3
-"""Tones (ln f_mel) whose left-over covariance is estimated, and the width of a tone."""
+TONES, WIDTH = tuple(math.log(f_mel) for f_mel in (0.045, 0.065, 0.09, 0.13, 0.19, 0.28)), 0.25
+"""Tones (ln f_mel) at which covariances are estimated, and the width of a tone."""
+
+REFERENCE_WIDTH = 0.45
 
 RANK = 6
 """Factors of a left-over covariance; the rest is independent at each band."""
@@ -24,9 +34,12 @@ RANK = 6
 NUISANCE = (0.6, 0.3, 0.1, 0.2)
 """Prior deviations of the nuisance: thickness, scattering, oxygenation, baseline."""
 
-_PRIOR_WEIGHT, _SHRINKAGE, _LEAST_VARIANCE = 0.02, 8.0, 1e-6
-_LEFTOVER = 0.003
-_COUNT, _ROUNDS, _STEPS = 3, 14, 3
+_PRIOR_WEIGHT, _SHRINKAGE, _MEAN_SHRINKAGE, _LEAST_VARIANCE = 0.15, 8.0, 4.0, 1e-6
+"""Weight of the nuisance's prior in the reference; records that a prior of a tone counts as."""
+
+_LEFTOVER, _COMPONENTS, _ROUNDS, _STEPS = 0.003, 3, 12, 3
+_LEAST_SPREAD = 0.003
+"""Variance that is added to each component of the mixture."""
 
 
 class Statistics(NamedTuple):
@@ -50,70 +63,150 @@ def fit_prior(
     r_surface: float,
     forearms: Float[Tensor, "people wavelength"],
     issa: Float[Tensor, "records wavelength"],
-) -> dict[str, Any]:
-    """Fit the record of a `SkinPrior` to two sets of spectra."""
-    target = torch.cat([forearms, issa])
-    weight = torch.cat(
-        [
-            torch.full((len(one),), share / len(one), dtype=torch.float64)
-            for one, share in ((forearms, FOREARMS), (issa, 1 - FOREARMS))
-        ]
-    )
-    record, skins = _make_first_record(), None
+) -> tuple[Record, Record]:
+    """Fit the records of two priors: the distribution of skins, and the fits' reference."""
+    target, weight = torch.cat([forearms, issa]), _weigh(len(forearms), len(issa))
+    reference, skins = _make_first_record(), None
     for _ in range(_ROUNDS):
-        skin = FittedSkin(optics, r_surface, SkinPrior(record))
-        fit = fit_skins(skin, target, skins, _STEPS if skins is not None else 30)
+        skin = FittedSkin(optics, r_surface, SkinPrior(reference))
+        fit = fit_skins(skin, target, skins, 30 if skins is None else _STEPS)
         skins = fit.skins
-        residual = target - skin.predict(*_split(skins))
-        record = _maximise(Statistics(skins, fit.covariance, residual, weight), record)
-    return record
+        f_mel, f_blood, *nuisance = skins.unbind(-1)
+        residual = target - skin.predict(f_mel.exp(), f_blood.exp(), Nuisance(*nuisance))
+        found = Statistics(skins, fit.covariance, residual, weight)
+        reference = _make_reference(found)
+    return describe_fits(found), reference
 
 
-def _split(skins: Float[Tensor, "people 6"]) -> tuple[Tensor, Tensor, Nuisance]:
-    f_mel, f_blood, *nuisance = skins.unbind(-1)
-    return f_mel.exp(), f_blood.exp(), Nuisance(*nuisance)
-
-
-def _make_first_record() -> dict[str, Any]:
-    """Start with a broad distribution, the same at every tone."""
-    tones = torch.tensor(TONES)
-    bands = torch.arange(33.0)
-    near = _LEFTOVER**2 * torch.exp(-(bands[:, None] - bands).abs() / 4)
-    leftover = (near + (_LEFTOVER / 2) ** 2 * torch.eye(33)).expand(len(tones), 33, 33)
-    means = torch.stack([torch.tensor([-2.8, -2.1, -1.3]), torch.full((_COUNT,), -3.2)], -1)
+def describe_fits(fits: Statistics) -> Record:
+    """Describe the distribution of fits, and of what they leave over."""
+    skins, weight = fits.skins, fits.weight
+    known, residual = (~fits.residual.isnan()).double(), fits.residual.nan_to_num(nan=0.0)
+    coefficients, e = _regress(skins, weight)
+    slopes = torch.linalg.solve(
+        e.T @ (weight[:, None] * e) + 1e-5 * torch.eye(4), e.T @ (weight[:, None] * residual)
+    )
+    residual = (residual - e @ slopes) * known
+    overall = _compute_moment(e, weight)
+    nuisance, means, leftover = [], [], []
+    for tone in TONES:
+        near, shrink = _find_near(fits, tone, WIDTH)
+        nuisance.append((1 - shrink) * _compute_moment(e, near) + shrink * overall)
+        count = 1 / near.square().sum()
+        mean = near @ residual / (near @ known) * count / (count + _MEAN_SHRINKAGE)
+        means.append(mean)
+        leftover.append(_shrink(_compute_moment((residual - mean) * known, near, known), shrink))
     return {
+        "tones": list(TONES),
+        "width": WIDTH,
+        "mixture": _fit_mixture(skins[:, :2], weight),
+        "nuisance": {
+            "coefficients": coefficients.tolist(),
+            "covariances": torch.stack(nuisance).tolist(),
+        },
+        "leftover": _factorise(torch.stack(leftover), torch.stack(means), slopes),
+    }
+
+
+def _weigh(forearms: int, issa: int) -> Float[Tensor, "people"]:
+    shares = (FOREARMS / forearms, (1 - FOREARMS) / issa)
+    return torch.tensor(shares).double().repeat_interleave(torch.tensor((forearms, issa)))
+
+
+def _make_first_record() -> Record:
+    """Start with a broad distribution, the same at every tone."""
+    bands = torch.arange(33.0).double()
+    near = _LEFTOVER**2 * torch.exp(-(bands[:, None] - bands).abs() / 4)
+    leftover = near + (_LEFTOVER / 1.5) ** 2 * torch.eye(33)
+    prior = torch.diag(torch.tensor(NUISANCE).double() ** 2)
+    return _make_record(leftover.expand(len(TONES), 33, 33), torch.zeros(2, 4), prior, (-3.1, 0.36))
+
+
+def _make_reference(fits: Statistics) -> Record:
+    """Estimate how the fits weigh: nuisance and blood with their uncertainty, and the left-over.
+
+    Melanin is free. What is left over has no mean: it is the model's error.
+    """
+    weight, known = fits.weight, (~fits.residual.isnan()).double()
+    residual = fits.residual.nan_to_num(nan=0.0)
+    coefficients, e = _regress(fits.skins, weight)
+    spread = torch.einsum("n,nij->ij", weight, fits.covariance)
+    prior = torch.diag(torch.tensor(NUISANCE).double() ** 2)
+    nuisance = (1 - _PRIOR_WEIGHT) * (_compute_moment(e, weight) + spread[2:, 2:])
+    leftover = []
+    for tone in TONES:
+        near, shrink = _find_near(fits, tone, REFERENCE_WIDTH)
+        leftover.append(_shrink(_compute_moment(residual, near, known), shrink))
+    mean = weight @ fits.skins[:, 1]
+    variance = weight @ (fits.skins[:, 1] - mean).square() + spread[1, 1]
+    blood = (float(mean), float(variance))
+    return _make_record(
+        torch.stack(leftover), coefficients, nuisance + _PRIOR_WEIGHT * prior, blood
+    )
+
+
+def _make_record(
+    leftover: Tensor, coefficients: Tensor, nuisance: Tensor, blood: tuple[float, float]
+) -> Record:
+    mean, variance = blood
+    return {
+        "tones": list(TONES),
+        "width": WIDTH,
         "mixture": {
-            "weights": [1 / _COUNT] * _COUNT,
-            "means": means.tolist(),
-            "covariances": (0.3 * torch.eye(2)).expand(_COUNT, 2, 2).tolist(),
+            "weights": [1.0],
+            "means": [[math.log(TYPICAL_F_MEL), mean]],
+            "covariances": [[[1.5**2, 0.0], [0.0, variance]]],
         },
         "nuisance": {
-            "coefficients": [[0.0] * 4] * 2,
-            "covariance": torch.diag(torch.tensor(NUISANCE) ** 2).tolist(),
+            "coefficients": coefficients.tolist(),
+            "covariances": nuisance.expand(len(TONES), 4, 4).tolist(),
         },
-        "leftover": _factorise(leftover.double()),
+        "leftover": _factorise(leftover, torch.zeros(len(TONES), 33), torch.zeros(4, 33)),
     }
 
 
-def _maximise(statistics: Statistics, record: Mapping[str, Any]) -> dict[str, Any]:
-    return {
-        "mixture": _fit_mixture(statistics, SkinPrior(record)),
-        "nuisance": _fit_nuisance(statistics),
-        "leftover": _factorise(_fit_leftover(statistics)),
-    }
+def _regress(skins: Tensor, weight: Tensor) -> tuple[Tensor, Tensor]:
+    """Regress the nuisance on ln f_mel; return coefficients and deviations."""
+    tone = skins[:, 0] - math.log(TYPICAL_F_MEL)
+    design = torch.stack([torch.ones_like(tone), tone], -1)
+    normal = design.T @ (weight[:, None] * design) + torch.diag(torch.tensor([1e-3, 1e-3]).double())
+    coefficients = torch.linalg.solve(normal, design.T @ (weight[:, None] * skins[:, 2:]))
+    return coefficients, skins[:, 2:] - design @ coefficients
 
 
-def _fit_mixture(statistics: Statistics, prior: SkinPrior) -> dict[str, Any]:
-    x, spread = statistics.skins[:, :2], statistics.covariance[:, :2, :2]
-    normal = torch.distributions.MultivariateNormal(prior.means, prior.covariances)
-    log_joint = prior.weights.log() + normal.log_prob(x[:, None])  # type: ignore[no-untyped-call]
-    share = log_joint.softmax(-1) * statistics.weight[:, None]
-    weights = share.sum(0)
-    means = share.T @ x / weights[:, None]
-    e = x[:, None] - means
-    square = e[..., :, None] * e[..., None, :] + spread[:, None]
-    covariances = (share[..., None, None] * square).sum(0) / weights[:, None, None]
-    covariances = covariances + 0.003 * torch.eye(2)
+def _find_near(fits: Statistics, tone: float, width: float) -> tuple[Tensor, float]:
+    """Return the weights of skins near a tone, and the share of the prior among them."""
+    near = torch.exp(-0.5 * ((fits.skins[:, 0] - tone) / width) ** 2) * fits.weight
+    near = near / near.sum()
+    return near, _SHRINKAGE / (_SHRINKAGE + 1 / float(near.square().sum()))
+
+
+def _compute_moment(x: Tensor, weight: Tensor, known: Tensor | None = None) -> Tensor:
+    moment = x.T @ (weight[:, None] * x)
+    if known is None:
+        return moment
+    return moment / (known.T @ (weight[:, None] * known)).clamp_min(1e-6)
+
+
+def _shrink(covariance: Tensor, share: float) -> Tensor:
+    """Shrink a covariance to independent bands."""
+    return (1 - share) * covariance + share * torch.diag(covariance.diagonal())
+
+
+def _fit_mixture(x: Float[Tensor, "people 2"], weight: Tensor) -> Record:
+    middle = torch.quantile(x[:, 0], torch.linspace(0.15, 0.85, _COMPONENTS).double())
+    means = torch.stack([middle, x[:, 1].mean().expand(_COMPONENTS)], -1)
+    weights = torch.full((_COMPONENTS,), 1 / _COMPONENTS).double()
+    covariances = torch.cov(x.T).expand(_COMPONENTS, 2, 2) / _COMPONENTS
+    for _ in range(200):
+        normal = torch.distributions.MultivariateNormal(means, covariances)
+        log_joint = weights.log() + normal.log_prob(x[:, None])  # type: ignore[no-untyped-call]
+        share = log_joint.softmax(-1) * weight[:, None]
+        weights = share.sum(0)
+        means = share.T @ x / weights[:, None]
+        e = x[:, None] - means
+        moment = torch.einsum("nk,nki,nkj->kij", share, e, e) / weights[:, None, None]
+        covariances = moment + _LEAST_SPREAD * torch.eye(2)
     return {
         "weights": weights.tolist(),
         "means": means.tolist(),
@@ -121,46 +214,14 @@ def _fit_mixture(statistics: Statistics, prior: SkinPrior) -> dict[str, Any]:
     }
 
 
-def _fit_nuisance(statistics: Statistics) -> dict[str, Any]:
-    """Regress the nuisance on ln f_mel; the prior counts as a share of all skins."""
-    weight, nuisance = statistics.weight, statistics.skins[:, 2:]
-    tone = statistics.skins[:, 0] - torch.tensor(TYPICAL_F_MEL).log()
-    design = torch.stack([torch.ones_like(tone), tone], -1)
-    normal = design.T @ (weight[:, None] * design) + torch.diag(torch.tensor([1e-3, 0.02]).double())
-    coefficients = torch.linalg.solve(normal, design.T @ (weight[:, None] * nuisance))
-    e = nuisance - design @ coefficients
-    spread = e[:, :, None] * e[:, None] + statistics.covariance[:, 2:, 2:]
-    covariance = (weight[:, None, None] * spread).sum(0)
-    prior = torch.diag(torch.tensor(NUISANCE).double() ** 2)
-    mixed = (1 - _PRIOR_WEIGHT) * covariance + _PRIOR_WEIGHT * prior
-    return {"coefficients": coefficients.tolist(), "covariance": mixed.tolist()}
-
-
-def _fit_leftover(statistics: Statistics) -> Float[Tensor, "tones wavelength wavelength"]:
-    """Estimate the covariance of residuals near each tone, drawn to independent bands."""
-    known = (~statistics.residual.isnan()).double()
-    r = statistics.residual.nan_to_num(nan=0.0)
-    found = []
-    for tone in TONES:
-        near = torch.exp(-0.5 * ((statistics.skins[:, 0] - tone) / WIDTH) ** 2)
-        share = near * statistics.weight
-        share = share / share.sum()
-        both = known.T @ (share[:, None] * known)
-        S = (r.T @ (share[:, None] * r)) / both.clamp_min(1e-6)
-        effective = 1 / share.square().sum()
-        shrink = _SHRINKAGE / (_SHRINKAGE + effective)
-        found.append((1 - shrink) * S + shrink * torch.diag(S.diagonal()))
-    return torch.stack(found)
-
-
-def _factorise(covariance: Float[Tensor, "tones wavelength wavelength"]) -> dict[str, Any]:
+def _factorise(covariance: Tensor, means: Tensor, slopes: Tensor) -> Record:
     """Write covariances as factors and independent variances, which takes a fifth of the space."""
     values, vectors = torch.linalg.eigh(covariance)
     factors = vectors[..., -RANK:] * values[..., None, -RANK:].clamp_min(0).sqrt()
     rest = covariance.diagonal(dim1=1, dim2=2) - factors.square().sum(-1)
     return {
-        "tones": list(TONES),
-        "width": WIDTH,
+        "means": means.tolist(),
+        "slopes": slopes.tolist(),
         "factors": factors.tolist(),
         "variances": rest.clamp_min(_LEAST_VARIANCE).tolist(),
     }

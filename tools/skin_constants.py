@@ -7,7 +7,7 @@ import torch
 from jaxtyping import Float
 from torch import Tensor
 
-from skinnet.physics import Nuisance, SkinOptics, SkinReflectance, include_specular
+from skinnet.physics import SkinOptics, SkinPrior, SkinReflectance, include_specular
 from tools.joint_fit import Fit, Problem, compute_newton_step, fit_jointly, fit_own
 
 
@@ -47,7 +47,7 @@ CONSTANTS = (
 
 CONVENTIONS = (
     "d_epd = .014 cm: f_mel and d_epd cannot be told apart. 70 um that diffuse light crosses at "
-    "twice their length, so that f_mel is that of the literature (light skin 1.3 to 6.3 %, moderate "
+    "twice their length, so that f_mel is the literature's (light skin 1.3 to 6.3 %, moderate "
     "11 to 16 %, dark 18 to 43 %).",
     "Absorption of melanin 6.6e11 lambda^-3.33 cm^-1 (Jacques 1998), held: a free factor is d_epd, "
     "and what the data say about its slope is r_melanin.",
@@ -56,11 +56,10 @@ CONVENTIONS = (
     "and .03 is the blood fraction at which d = d_pd.",
 )
 
-F_BLOOD_REFERENCE, DEPTH_EXPONENT = 0.03, 1.5
 _BASE_FLOOR, _BASE_SCALE = 0.244, 85.3
 _NOISE = 0.01 * math.sqrt(8)
-"""Standard deviation of a band: an error of .01 whose neighbours are correlated, so that the 33 bands
-of a spectrum count as four independent ones."""
+"""Standard deviation of a band: an error of .01 whose neighbours are correlated, so that 33 bands
+count as four independent ones."""
 
 _SET_WEIGHT = 200.0
 """Records that each set of spectra counts as."""
@@ -88,6 +87,11 @@ def write_constants(constants: dict[str, float]) -> Float[Tensor, "constant"]:
     return torch.tensor([d / one.sd for d, one in zip(deviations, CONSTANTS, strict=True)]).double()
 
 
+def round_constants(constants: dict[str, float]) -> dict[str, float]:
+    """Round constants to three digits, as they are typed into the preset."""
+    return {name: float(f"{value:.3g}") for name, value in constants.items()}
+
+
 def make_optics(constants: dict[str, float]) -> SkinOptics:
     """Make the preset `measured` with other values of what is fitted."""
     own: dict[str, Any] = dict(constants)
@@ -97,20 +101,13 @@ def make_optics(constants: dict[str, float]) -> SkinOptics:
     return SkinOptics.preset("measured", **own, **base)
 
 
-def typical_nuisance(f_blood: Float[Tensor, "*batch"]) -> Nuisance:
-    """Tie the depth of the dermis to blood, d = d_pd (f_blood / .03)^1.5."""
-    zero = torch.zeros_like(f_blood)
-    depth = DEPTH_EXPONENT * (f_blood / F_BLOOD_REFERENCE).log()
-    return Nuisance(depth, zero, zero, zero)
-
-
 def describe(own: Float[Tensor, "record 2"], shared: Tensor) -> Float[Tensor, "record wavelength"]:
     """Compute measured reflectance from the roots of two fractions and the constants."""
     constants = read_constants(shared)
     f_mel, f_blood = own.square().unbind(-1)
     skin = SkinReflectance(make_optics(constants), dtype=torch.float64)
     return include_specular(
-        skin.bands(f_mel, f_blood, typical_nuisance(f_blood)), constants["r_surface"]
+        skin.bands(f_mel, f_blood, SkinPrior.typical_nuisance(f_blood)), constants["r_surface"]
     )
 
 

@@ -25,7 +25,11 @@ class SkinPrior:
 
     ln f_mel and ln f_blood follow a mixture of normal distributions. Given melanin, the nuisance is
     normal about a mean that is linear in ln f_mel. What the model leaves over at each band is
-    normal with a covariance that depends on ln f_mel.
+    normal about a mean that depends on ln f_mel and is linear in the nuisance. Both covariances
+    depend on ln f_mel.
+
+    A skin's fractions and nuisance are those that fit its spectrum best: the distribution is that
+    of such fits, and what is left over is what they leave.
 
     Args:
         record: What `python -m tools.fit_skin` fits; None: the distribution that was fitted to 100
@@ -51,12 +55,13 @@ class SkinPrior:
             _to_tensor(record["mixture"][name]) for name in ("weights", "means", "covariances")
         )
         self.coefficients, self.nuisance = (
-            _to_tensor(record["nuisance"][name]) for name in ("coefficients", "covariance")
+            _to_tensor(record["nuisance"][name]) for name in ("coefficients", "covariances")
         )
-        self.tones, factors, rest = (
-            _to_tensor(record["leftover"][name]) for name in ("tones", "factors", "variances")
+        self.tones, self.width = _to_tensor(record["tones"]), float(record["width"])
+        self.leftover_means, self.slopes, factors, rest = (
+            _to_tensor(record["leftover"][name])
+            for name in ("means", "slopes", "factors", "variances")
         )
-        self.width = float(record["leftover"]["width"])
         self.leftover = factors @ factors.mT + torch.diag_embed(rest)
 
     def sample(
@@ -78,10 +83,10 @@ class SkinPrior:
         pigments = self.means[component] + _sample_normal(self.covariances[component], rng)
         f_mel, f_blood = pigments.exp().clamp(max=1.0).unbind(-1)
         mean, covariance, leftover = self.condition(f_mel)
-        deviations = torch.stack(list(mean), -1) + _sample_normal(
-            covariance.expand(count, *covariance.shape), rng
-        )
-        return f_mel, f_blood, Nuisance(*deviations.unbind(-1)), _sample_normal(leftover, rng)
+        deviations = torch.stack(list(mean), -1) + _sample_normal(covariance, rng)
+        nuisance = Nuisance(*deviations.unbind(-1))
+        rest = self.leftover_mean(f_mel, nuisance) + _sample_normal(leftover, rng)
+        return f_mel, f_blood, nuisance, rest
 
     def log_prob(
         self,
@@ -127,7 +132,9 @@ class SkinPrior:
 
     def condition(
         self, f_mel: Float[Tensor, "*batch"]
-    ) -> tuple[Nuisance, Float[Tensor, "4 4"], Float[Tensor, "*batch wavelength wavelength"]]:
+    ) -> tuple[
+        Nuisance, Float[Tensor, "*batch 4 4"], Float[Tensor, "*batch wavelength wavelength"]
+    ]:
         """Compute the distributions of nuisance and of what is left over, given melanin.
 
         Args:
@@ -135,14 +142,35 @@ class SkinPrior:
 
         Returns:
             Mean and covariance of the nuisance, in the order of its fields, and the covariance of
-            the measured reflectance that the model leaves over.
+            the measured reflectance that the model leaves over about `leftover_mean`.
         """
-        tone = f_mel.to(self.means.dtype).log()
-        design = torch.stack([torch.ones_like(tone), (f_mel / TYPICAL_F_MEL).log()], -1)
-        mean = design.to(self.means.dtype) @ self.coefficients
-        near = torch.softmax(-0.5 * ((tone[..., None] - self.tones) / self.width) ** 2, -1)
+        near = self._weigh_tones(f_mel)
+        nuisance = torch.einsum("...t,tij->...ij", near, self.nuisance)
         leftover = torch.einsum("...t,tij->...ij", near, self.leftover)
-        return Nuisance(*mean.unbind(-1)), self.nuisance, leftover
+        return Nuisance(*self._regress(f_mel).unbind(-1)), nuisance, leftover
+
+    def leftover_mean(
+        self, f_mel: Float[Tensor, "*#batch"], nuisance: Nuisance
+    ) -> Float[Tensor, "*batch wavelength"]:
+        """Compute the mean of what the model leaves over, to be added to what it predicts.
+
+        Args:
+            f_mel: Melanosome volume fraction, above 0.
+            nuisance: Deviations from the preset's constants.
+
+        Returns:
+            Measured reflectance (specular included) less that of the model, float64.
+        """
+        deviations = torch.stack(torch.broadcast_tensors(*nuisance), -1) - self._regress(f_mel)
+        return self._weigh_tones(f_mel) @ self.leftover_means + deviations @ self.slopes
+
+    def _weigh_tones(self, f_mel: Float[Tensor, "*batch"]) -> Float[Tensor, "*batch tone"]:
+        tone = f_mel.to(self.means.dtype).log()
+        return torch.softmax(-0.5 * ((tone[..., None] - self.tones) / self.width) ** 2, -1)
+
+    def _regress(self, f_mel: Float[Tensor, "*batch"]) -> Float[Tensor, "*batch 4"]:
+        tone = (f_mel.to(self.means.dtype) / TYPICAL_F_MEL).log()
+        return torch.stack([torch.ones_like(tone), tone], -1) @ self.coefficients
 
     @staticmethod
     def typical_nuisance(f_blood: Float[Tensor, "*batch"]) -> Nuisance:
