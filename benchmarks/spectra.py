@@ -41,14 +41,12 @@ from benchmarks.measured_skin import (
     summarise_two_numbers,
 )
 from benchmarks.peers import score_peers
-from benchmarks.recovered_spectra import FittedSkin, load_d65_matrix
+from benchmarks.recovered_spectra import load_d65_matrix
 from benchmarks.report import Results, main
 from benchmarks.skin_spectra import fill_bands, load_forearms, load_issa
 from benchmarks.spectra_file import read_spectra
-from skinnet.physics import PRESETS, SkinOptics, SkinPrior
-from skinnet.physics.specular import R_SURFACE
-from tools.prior_fit import fit_prior
-from tools.skin_constants import fit_constants, make_optics, read_constants
+from skinnet.physics import PRESETS
+from tools.fit_skin import fit_skin
 
 
 def measure(
@@ -84,18 +82,12 @@ def _measure(
     results["pca_issa"] = score_principal_components(issa)
     alone = {name: results["measured"][name] for name in ("median", "p95")}
     fixed = {"nist": alone, "issa": results["measured"]["issa"]}
-    of_forearms, of_issa = cross_validate(_refit, forearms, issa)
+    of_forearms, of_issa = cross_validate(fit_skin, forearms, issa)
     for name, found in summarise_scores({"nist": of_forearms, "issa": of_issa}).items():
         results[name] = results.get(name, {}) | found
     results["measured"]["fixed"] = fixed
     results["peers"] = _score_peers(peers, issa)
     return results
-
-
-def _refit(forearms: Tensor, issa: Tensor) -> FittedSkin:
-    constants = read_constants(fit_constants(forearms, issa).shared)
-    optics, r_surface = make_optics(constants), constants["r_surface"]
-    return FittedSkin(optics, r_surface, SkinPrior(fit_prior(optics, r_surface, forearms, issa)))
 
 
 def summarise_scores(scores: Mapping[str, SkinScores]) -> Results:
@@ -117,8 +109,8 @@ def _score_peers(directory: Path | None, target: Tensor) -> Results:
 
 
 def _score_further(target: Tensor) -> Results:
-    """Score spectra that nothing was fitted to, with the constants and the prior as shipped."""
-    shipped = FittedSkin(SkinOptics(), R_SURFACE, SkinPrior())
+    """Score spectra that nothing was fitted to; constants and prior are those that are shipped."""
+    shipped = fit_skin(load_forearms(), load_issa())
     found = summarise_scores({"issa": score_skin(shipped, target)})
     return {"count": len(target)} | found
 

@@ -5,7 +5,7 @@ unnoticed. Only the tables of measured numbers are shared.
 """
 
 import csv
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 from types import MappingProxyType
 
@@ -41,7 +41,7 @@ MEASURED: Mapping[str, float] = MappingProxyType(
         "f_oxy": 0.687,
         "d_epd": 0.014,
         "d_pd": 0.219,
-        "r": 5.9e-4,
+        "r": 5.86e-4,
         "r_melanin": 5.35e-4,
         "floor": 0.188,
         "scale": 65.9,
@@ -111,6 +111,22 @@ def reflectance(preset: str, f_mel: ArrayLike, f_blood: ArrayLike, **constants: 
     k = blood * _blood(c) + (1 - blood) * base
     s = scattering(c["mie"], c["rayleigh"])
     return np.exp(-2 * absorbed) * kubelka_munk(k, s, c["d_pd"], preset == "printed")
+
+
+def reflectance_of_one(f_mel: float, f_blood: float, nuisance: Sequence[float]) -> Array:
+    """Return the spectrum, [33], of one skin of `measured` whose constants deviate.
+
+    In this order: ln thickness and ln scattering of the dermis, share of oxygenated hemoglobin,
+    ln baseline absorption.
+    """
+    thickness, scattering, oxygenation, base = nuisance
+    d_pd = MEASURED["d_pd"] * np.e**thickness
+    s = {name: MEASURED[name] * np.e**scattering for name in ("mie", "rayleigh")}
+    floor, scale = (MEASURED[name] * np.e**base for name in ("floor", "scale"))
+    f_oxy = min(max(MEASURED["f_oxy"] + oxygenation, 0.0), 1.0)
+    return reflectance(
+        "measured", f_mel, f_blood, d_pd=d_pd, floor=floor, scale=scale, f_oxy=f_oxy, **s
+    )
 
 
 def _epidermis(preset: str, mel: Array, blood: Array, base: Array, c: Mapping[str, float]) -> Array:

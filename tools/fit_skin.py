@@ -15,11 +15,11 @@ from pathlib import Path
 from typing import Any
 
 import torch
-from benchmarks.recovered_spectra import FittedSkin
-from benchmarks.skin_spectra import load_forearms, load_issa
 from jaxtyping import Float
 from torch import Tensor
 
+from benchmarks.recovered_spectra import FittedSkin
+from benchmarks.skin_spectra import load_forearms, load_issa
 from skinnet.files import write_atomically
 from skinnet.physics import R_SURFACE, SkinOptics, SkinPrior
 from tools.joint_fit import Fit

@@ -104,7 +104,7 @@ class SkinOptics:
         None, "cm", 0.0, 1.0, "path of the epidermis' baseline absorption; None: d_epd"
     )
     r_vessel: Constant = _constant(
-        5.9e-4, "cm", 0.0, 0.1, _FITTED + "pigment packaging, Duysens 1956; 0: off"
+        5.86e-4, "cm", 0.0, 0.1, _FITTED + "pigment packaging, Duysens 1956; 0: off"
     )
     r_melanin: Constant = _constant(
         5.35e-4, "cm", 0.0, 0.1, _FITTED + "pigment packaging, Duysens 1956; 0: off"

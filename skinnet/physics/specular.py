@@ -3,7 +3,7 @@
 from jaxtyping import Float
 from torch import Tensor
 
-R_SURFACE = 0.05
+R_SURFACE = 0.0504
 """Reflectance of the surface, fitted to measured spectra by `python -m tools.fit_skin`. Fresnel's
 equations have .028 for n = 1.4 at normal incidence, and .04 to .06 for diffuse light on a rough
 surface."""
