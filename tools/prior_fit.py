@@ -209,7 +209,7 @@ def _fit_mixture(x: Float[Tensor, "people 2"], weight: Tensor) -> Record:
     covariances = torch.cov(x.T).expand(_COMPONENTS, 2, 2) / _COMPONENTS
     for _ in range(200):
         normal = torch.distributions.MultivariateNormal(means, covariances)
-        log_joint = weights.log() + normal.log_prob(x[:, None])  # type: ignore[no-untyped-call]
+        log_joint = weights.log() + normal.log_prob(x[:, None])
         share = log_joint.softmax(-1) * weight[:, None]
         weights = share.sum(0)
         means = share.T @ x / weights[:, None]

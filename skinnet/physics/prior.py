@@ -108,7 +108,7 @@ class SkinPrior:
         parts = torch.broadcast_tensors(*nuisance, *mean)
         deviations = torch.stack(parts[:4], -1) - torch.stack(parts[4:], -1)
         normal = MultivariateNormal(torch.zeros_like(deviations), covariance)
-        log_prob: Tensor = normal.log_prob(deviations)  # type: ignore[no-untyped-call]
+        log_prob: Tensor = normal.log_prob(deviations)
         return self.log_density(f_mel, f_blood) + log_prob
 
     def log_density(
@@ -127,7 +127,7 @@ class SkinPrior:
         mixture = MixtureSameFamily(
             Categorical(self.weights), MultivariateNormal(self.means, self.covariances)
         )
-        density: Tensor = mixture.log_prob(pigments.to(self.means.dtype))  # type: ignore[no-untyped-call]
+        density: Tensor = mixture.log_prob(pigments.to(self.means.dtype))
         return density
 
     def condition(
@@ -206,7 +206,8 @@ def _sample_normal(
 ) -> Float[Tensor, "count size"]:
     shape = covariance.shape[:-1]
     normal = torch.randn(shape, generator=rng, dtype=covariance.dtype, device=rng.device)
-    return (torch.linalg.cholesky(covariance) @ normal[..., None])[..., 0]
+    root: Tensor = torch.linalg.cholesky(covariance)
+    return (root @ normal[..., None])[..., 0]
 
 
 @cache
