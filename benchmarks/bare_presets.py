@@ -7,8 +7,7 @@ from torch import Tensor
 from benchmarks.least_squares import BOUNDS, Bounds, compute_rmse, fit, summarise
 from benchmarks.recovered_spectra import load_d65_matrix
 from benchmarks.report import Results
-from skinnet.physics import SkinOptics, SkinReflectance, include_specular
-from skinnet.physics.specular import R_SURFACE
+from skinnet.physics import R_SURFACE, SkinOptics, SkinReflectance, include_specular
 
 PAPER_RANGE = ((0.01, 0.43), (0.02, 0.07))
 RADII = tuple(step * 2.5e-4 for step in range(17))

@@ -44,7 +44,6 @@ class SkinScores(NamedTuple):
         delta_e: CIEDE2000 of that spectrum, once its colour under D65 is exact.
         delta_e_uncorrected: The same without the correction.
         inside: Whether the fit of melanin, blood and nuisance lies in the colour's 90 % interval.
-        share: The share of that fit's own distribution which does.
     """
 
     angle: Float[Tensor, "people"]
@@ -54,7 +53,6 @@ class SkinScores(NamedTuple):
     delta_e: Float[Tensor, "people light"]
     delta_e_uncorrected: Float[Tensor, "people light"]
     inside: Float[Tensor, "people 2"]
-    share: Float[Tensor, "people 2"]
 
 
 def score_skin(skin: FittedSkin, target: Float[Tensor, "people wavelength"]) -> SkinScores:
@@ -63,7 +61,6 @@ def score_skin(skin: FittedSkin, target: Float[Tensor, "people wavelength"]) -> 
     whole = fill_bands(target)
     nodes, rgb = SkinNodes(skin), whole @ load_d65_matrix()
     posterior = nodes.infer(rgb)
-    inside, share = _score_intervals(nodes, posterior, _fit_whole(skin, target))
     return SkinScores(
         angle=compute_typology_angles(whole),
         rmse=rmse,
@@ -71,8 +68,7 @@ def score_skin(skin: FittedSkin, target: Float[Tensor, "people wavelength"]) -> 
         rgb_rmse=compute_rmse(posterior.spectra, target),
         delta_e=compute_differences(make_exact(posterior.spectra, rgb), whole),
         delta_e_uncorrected=compute_differences(posterior.spectra, whole),
-        inside=inside,
-        share=share,
+        inside=_score_intervals(nodes, posterior, _fit_whole(skin, target)),
     )
 
 
@@ -82,17 +78,15 @@ def _fit_whole(skin: FittedSkin, target: Tensor) -> SkinFit:
 
 def _score_intervals(
     nodes: SkinNodes, posterior: ColourPosterior, best: SkinFit
-) -> tuple[Tensor, Tensor]:
-    """Return whether each fit lies in the colour's interval, and the share of it that does."""
-    deviation = best.covariance.diagonal(dim1=1, dim2=2).sqrt()
-    inside, share = [], []
+) -> Float[Tensor, "people 2"]:
+    """Return 1 for each fit of melanin and blood that lies in the colour's interval, else 0."""
     axes = ((nodes.f_mel, posterior.f_mel), (nodes.f_blood, posterior.f_blood))
+    inside = []
     for i, (node, weights) in enumerate(axes):
-        low, high = (end.log() - best.skins[:, i] for end in compute_interval(node, weights))
-        inside.append(((low <= 0) & (high >= 0)).double())
-        normal = torch.special.ndtr
-        share.append(normal(high / deviation[:, i]) - normal(low / deviation[:, i]))
-    return torch.stack(inside, -1), torch.stack(share, -1)
+        low, high = compute_interval(node, weights)
+        f = best.skins[:, i].exp()
+        inside.append(((low <= f) & (f <= high)).double())
+    return torch.stack(inside, -1)
 
 
 def score_two_numbers(skin: FittedSkin, target: Tensor) -> tuple[Tensor, Tensor]:
@@ -162,21 +156,12 @@ def summarise_groups(scores: SkinScores) -> Results:
 
 
 def summarise_coverage(scores: SkinScores) -> Results:
-    """Summarise by group how many fits lie in the 90 % intervals.
-
-    `f_mel` and `f_blood` count the most probable skins. A fit is uncertain itself, and is drawn
-    towards the prior's mean; `f_mel_share` and `f_blood_share` count its whole distribution.
-    """
-    return {
-        name: {"count": len(part.angle)}
-        | _name_fractions(part.inside.mean(0))
-        | _name_fractions(part.share.mean(0), "_share")
-        for name, part in _split_groups(scores)
-    }
-
-
-def _name_fractions(pair: Tensor, suffix: str = "") -> Results:
-    return {f"f_mel{suffix}": pair[0].item(), f"f_blood{suffix}": pair[1].item()}
+    """Summarise by group the share of fits that lie in the 90 % intervals of their colours."""
+    coverage: Results = {}
+    for name, part in _split_groups(scores):
+        f_mel, f_blood = part.inside.mean(0).tolist()
+        coverage[name] = {"count": len(part.angle), "f_mel": f_mel, "f_blood": f_blood}
+    return coverage
 
 
 def _split_groups(scores: SkinScores) -> Iterator[tuple[str, SkinScores]]:

@@ -41,12 +41,13 @@ from benchmarks.measured_skin import (
     summarise_two_numbers,
 )
 from benchmarks.peers import score_peers
-from benchmarks.recovered_spectra import load_d65_matrix
+from benchmarks.recovered_spectra import FittedSkin, load_d65_matrix
 from benchmarks.report import Results, main
 from benchmarks.skin_spectra import fill_bands, load_forearms, load_issa
 from benchmarks.spectra_file import read_spectra
-from skinnet.physics import PRESETS
+from skinnet.physics import PRESETS, R_SURFACE, SkinOptics, SkinPrior
 from tools.fit_skin import fit_skin
+from tools.prior_fit import fit_prior
 
 
 def measure(
@@ -109,8 +110,10 @@ def _score_peers(directory: Path | None, target: Tensor) -> Results:
 
 
 def _score_further(target: Tensor) -> Results:
-    """Score spectra that nothing was fitted to; constants and prior are those that are shipped."""
-    shipped = fit_skin(load_forearms(), load_issa())
+    """Score spectra that nothing was fitted to, with the constants and the prior as shipped."""
+    optics = SkinOptics()
+    _, reference = fit_prior(optics, R_SURFACE, load_forearms(), load_issa())
+    shipped = FittedSkin(optics, R_SURFACE, SkinPrior(), SkinPrior(reference))
     found = summarise_scores({"issa": score_skin(shipped, target)})
     return {"count": len(target)} | found
 

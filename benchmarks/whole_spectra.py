@@ -95,26 +95,39 @@ def _expand(skin: FittedSkin, z: Tensor, target: Tensor) -> _Expansion:
 
 def _expand_likelihood(skin: FittedSkin, z: Tensor, target: Tensor) -> _Expansion:
     known = ~target.isnan()
-    S, dS = (_load_noise(skin, z[:, 0] + shift, known) for shift in (0.0, DELTA))
-    dS = (dS - S) / DELTA
+    S, later = (_load_noise(skin, z[:, 0] + shift, known) for shift in (0.0, DELTA))
     here = _predict(skin, z)
     unit = torch.eye(z.shape[-1], dtype=torch.float64)
     J = torch.stack([(_predict(skin, z + DELTA * e) - here) / DELTA for e in unit], -1)
-    J, r = J * known[..., None], (target - here).nan_to_num(nan=0.0)
-    solved = torch.linalg.solve(S, torch.cat([J, r[..., None], dS], -1))
-    SJ, Sr, SdS = solved[..., :6], solved[..., 6], solved[..., 7:]
-    value = -0.5 * ((r * Sr).sum(-1) + torch.logdet(S))
-    gradient, information = (SJ.mT @ r[..., None])[..., 0], SJ.mT @ J
-    # The noise depends on melanin too.
-    trace = SdS.diagonal(dim1=1, dim2=2).sum(-1)
-    gradient[:, 0] += 0.5 * ((Sr[:, None] @ dS @ Sr[..., None])[:, 0, 0] - trace)
-    information[:, 0, 0] += 0.5 * (SdS * SdS.mT).sum((1, 2))
+    return _expand_normal(
+        (target - here).nan_to_num(nan=0.0), -J * known[..., None], S, (later - S) / DELTA
+    )
+
+
+def _expand_normal(e: Tensor, slope: Tensor, noise: Tensor, change: Tensor) -> _Expansion:
+    """Expand a normal density of e(z) whose covariance depends on ln f_mel too.
+
+    Args:
+        e: Deviations from the mean.
+        slope: Derivative of the deviations.
+        noise: Covariance.
+        change: Derivative of the covariance by ln f_mel.
+    """
+    solved = torch.linalg.solve(noise, torch.cat([slope, e[..., None], change], -1))
+    by_z, weighted, relative = solved[..., :6], solved[..., 6], solved[..., 7:]
+    gradient, information = -(by_z.mT @ e[..., None])[..., 0], by_z.mT @ slope
+    trace = relative.diagonal(dim1=1, dim2=2).sum(-1)
+    gradient[:, 0] += 0.5 * ((weighted[:, None] @ change @ weighted[..., None])[:, 0, 0] - trace)
+    information[:, 0, 0] += 0.5 * (relative * relative.mT).sum((1, 2))
+    value = -0.5 * ((e * weighted).sum(-1) + torch.logdet(noise))
     return _Expansion(value, gradient, information)
 
 
 def _predict(skin: FittedSkin, z: Tensor) -> Tensor:
-    f_mel, f_blood, *nuisance = z.unbind(-1)
-    return skin.predict(f_mel.exp(), f_blood.exp(), Nuisance(*nuisance))
+    f_mel, f_blood = z[:, 0].exp(), z[:, 1].exp()
+    nuisance = Nuisance(*z[:, 2:].unbind(-1))
+    rest = skin.prior.leftover_mean(f_mel, nuisance)
+    return skin.predict(f_mel, f_blood, nuisance) + rest
 
 
 def _load_noise(skin: FittedSkin, tone: Tensor, known: Tensor) -> Tensor:
@@ -125,16 +138,11 @@ def _load_noise(skin: FittedSkin, tone: Tensor, known: Tensor) -> Tensor:
 
 
 def _expand_nuisance(skin: FittedSkin, z: Tensor) -> _Expansion:
-    mean, covariance, _ = skin.prior.condition(z[:, 0].exp())
-    later, _, _ = skin.prior.condition((z[:, 0] + DELTA).exp())
-    e = z[:, 2:] - torch.stack(list(mean), -1)
-    slope = (torch.stack(list(later), -1) - torch.stack(list(mean), -1)) / DELTA
-    D = torch.cat(
-        [-slope[..., None], torch.zeros(len(z), 4, 1), torch.eye(4).expand(len(z), 4, 4)], -1
-    )
-    P = torch.linalg.inv(covariance)
-    Pe = (P @ e[..., None])[..., 0]
-    return _Expansion(-0.5 * (e * Pe).sum(-1), -(D.mT @ Pe[..., None])[..., 0], D.mT @ P @ D)
+    here, later = (skin.prior.condition((z[:, 0] + shift).exp()) for shift in (0.0, DELTA))
+    mean, S, shifted = torch.stack(list(here[0]), -1), here[1], torch.stack(list(later[0]), -1)
+    J = torch.eye(6, dtype=torch.float64)[2:].repeat(len(z), 1, 1)
+    J[:, :, 0] = (mean - shifted) / DELTA
+    return _expand_normal(z[:, 2:] - mean, J, S, (later[1] - S) / DELTA)
 
 
 def _expand_pigments(skin: FittedSkin, z: Tensor) -> _Expansion:

@@ -13,7 +13,6 @@ from benchmarks.recovered_spectra import (
 from benchmarks.whole_spectra import fit_skins
 from skinnet.physics import Nuisance, SkinOptics, SkinPrior
 from skinnet.physics.specular import R_SURFACE
-from tools.prior_fit import make_first_record
 
 COUNT = 400
 
@@ -83,8 +82,6 @@ def test_fit_of_a_whole_spectrum_is_the_most_probable_skin(
 ) -> None:
     target = sample[2][:20].clone()
     target[::2, -2:] = torch.nan
-    # As in every fit, the covariance of the nuisance does not depend on the tone.
-    skin = skin._replace(prior=SkinPrior(make_first_record()))
     best = fit_skins(skin, target).skins
 
     def log_posterior(z: torch.Tensor) -> torch.Tensor:
@@ -92,6 +89,7 @@ def test_fit_of_a_whole_spectrum_is_the_most_probable_skin(
         f_mel, f_blood, nuisance = f_mel.exp(), f_blood.exp(), Nuisance(*nuisance)
         _, _, noise = skin.prior.condition(f_mel)
         residual = target - skin.predict(f_mel, f_blood, nuisance)
+        residual = residual - skin.prior.leftover_mean(f_mel, nuisance)
         known = ~target.isnan()
         likelihood = [
             torch.distributions.MultivariateNormal(
