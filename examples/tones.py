@@ -82,10 +82,12 @@ class Face:
 
     def wear(self, f_mel: float, f_blood: float, offset: NDArray[np.float32]) -> SkinTexture:
         """Make the texture of a skin whose typical texel has these fractions."""
-        maps = (self.melanin * f_mel).clip(0, 1), (self.blood * f_blood).clip(0, 1)
-        whole = np.broadcast_to(offset, (*maps[0].shape, 3)).astype(np.float32)
-        known = np.ones(maps[0].shape, bool)
-        return SkinTexture(*(one.astype(np.float32) for one in maps), whole, known)
+        melanin, blood = (
+            (pattern * fraction).clip(0, 1).astype(np.float32)
+            for pattern, fraction in ((self.melanin, f_mel), (self.blood, f_blood))
+        )
+        whole = np.broadcast_to(offset, (*melanin.shape, 3)).astype(np.float32)
+        return SkinTexture(melanin, blood, whole, np.ones(melanin.shape, bool))
 
     def draw(self, texture: SkinTexture) -> NDArray[np.uint8]:
         """Render the face with a texture of skin."""

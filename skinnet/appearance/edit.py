@@ -12,7 +12,7 @@ from skinnet.errors import InputError
 _LARGEST_SCALE = 10.0
 
 _DARKEST = 1e-6
-"""Sum of linear R, G and B below which skin is as good as black."""
+"""Linear R, G or B below which a channel is as good as black."""
 
 
 @dataclass(frozen=True)
@@ -79,9 +79,9 @@ def edit_texture(
     """Edit the pigments of a texture; its offset darkens with the skin and never grows.
 
     The offset is a difference of colours that was found at one lightness. Added to skin that an
-    edit makes darker, it would outweigh the skin and tint it, so it is multiplied by the ratio of
-    the model's R + G + B after and before. On skin that becomes lighter it stays: multiplied as
-    well, an error in a dark blue channel would be seen several times larger.
+    edit makes darker, it would outweigh the skin and tint it, so each channel is multiplied by the
+    ratio of the model's colours after and before. In a channel that becomes lighter it stays:
+    multiplied as well, an error in the little blue of dark skin would be seen several times larger.
 
     Args:
         texture: Maps to edit; they are not changed in place.
@@ -119,13 +119,11 @@ def edit_texture(
         f_mel=texture.f_mel + weight * (melanin(texture.f_mel) - texture.f_mel),
         f_blood=texture.f_blood + weight * (hemoglobin(texture.f_blood) - texture.f_blood),
     )
-    before, after = (_sum_channels(one, colour) for one in (texture, edited))
+    before, after = (_decode_bare(one, colour) for one in (texture, edited))
     ratio = (np.maximum(after, _DARKEST) / np.maximum(before, _DARKEST)).clip(0, 1)
-    return replace(edited, offset=texture.offset * ratio[..., None].astype(np.float32))
+    return replace(edited, offset=texture.offset * ratio.astype(np.float32))
 
 
-def _sum_channels(texture: SkinTexture, colour: SkinColour) -> Float32[np.ndarray, "size size"]:
-    """Sum linear R, G and B of the skin without its offset."""
-    bare = replace(texture, offset=np.zeros_like(texture.offset))
-    total: Float32[np.ndarray, "size size"] = bare.albedo(colour).sum(-1)
-    return total
+def _decode_bare(texture: SkinTexture, colour: SkinColour) -> Float32[np.ndarray, "size size 3"]:
+    """Compute the linear RGB of the skin without its offset."""
+    return replace(texture, offset=np.zeros_like(texture.offset)).albedo(colour)

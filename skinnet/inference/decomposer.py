@@ -16,7 +16,7 @@ from skinnet.images.faces import find_face, frame_head
 from skinnet.images.photograph import as_photo
 from skinnet.images.resizing import resize
 from skinnet.images.srgb import srgb_to_linear
-from skinnet.inference._editing import apply_gain, compute_gain, fade_edges
+from skinnet.inference._editing import ColourChange, apply_change, compute_change, fade_edges
 from skinnet.inference.decomposition import Decomposition
 from skinnet.inference.full_resolution._colour_table import tabulate_colours
 from skinnet.inference.full_resolution._layers import Layers, enlarge_layers, sharpen_layers
@@ -168,10 +168,10 @@ class Decomposer:
         box = _choose_box(photo, whole_image, name or _name_image(image))
         crop = photo[box.slices]
         encoder_outputs = self._encode(crop)
-        gain = self._compute_gain(encoder_outputs, melanin, hemoglobin)
-        mask = encoder_outputs["mask"][0] * fade_edges(gain.shape[:2], box, photo.shape[:2])
+        change = self._compute_change(encoder_outputs, melanin, hemoglobin)
+        mask = encoder_outputs["mask"][0] * fade_edges(change.loss.shape[:2], box, photo.shape[:2])
         edited = photo.copy()
-        edited[box.slices] = apply_gain(crop, gain, encoder_outputs["specular"][0], mask)
+        edited[box.slices] = apply_change(crop, change, encoder_outputs["specular"][0], mask)
         return edited
 
     def _encode(self, crop: NDArray[np.uint8]) -> dict[str, NDArray[np.float32]]:
@@ -199,9 +199,9 @@ class Decomposer:
         table = tabulate_colours(self.decoder, encoder_outputs, pigment_tops)
         return sharpen_layers(crop, maps, decoded, table, tops["shading"], self.threads)
 
-    def _compute_gain(
+    def _compute_change(
         self, encoder_outputs: _Arrays, melanin: float, hemoglobin: float
-    ) -> NDArray[np.float32]:
+    ) -> ColourChange:
         bare = dict(encoder_outputs) | {
             "shading": np.ones_like(encoder_outputs["shading"]),
             "specular": np.zeros_like(encoder_outputs["specular"]),
@@ -210,7 +210,7 @@ class Decomposer:
         factors = {"melanin": np.float32(melanin), "hemoglobin": np.float32(hemoglobin)}
         scaled = {name: np.clip(bare[name] * factor, 0, 1) for name, factor in factors.items()}
         before, after = (srgb_to_linear(self._decode(maps)) for maps in (bare, bare | scaled))
-        return compute_gain(before, after, encoder_outputs["mask"][0])
+        return compute_change(before, after, encoder_outputs["mask"][0])
 
     def _name_light(self, encoder_outputs: _Arrays) -> dict[str, float]:
         weights = encoder_outputs["light"][0].tolist()

@@ -47,10 +47,10 @@ def test_the_offset_darkens_with_the_skin_and_never_grows(colour: SkinColour) ->
     paler = edit_texture(face, colour, PigmentEdit(scale=0.5), PigmentEdit())
     assert np.array_equal(paler.offset, face.offset)
     before, after = (
-        replace(one, offset=np.zeros_like(one.offset)).albedo(colour).sum(-1)[face.mask]
+        replace(one, offset=np.zeros_like(one.offset)).albedo(colour)[face.mask]
         for one in (face, darker)
     )
-    expected = face.offset[face.mask] * (after / before)[:, None]
+    expected = face.offset[face.mask] * after / before
     assert np.allclose(darker.offset[face.mask], expected, atol=1e-7)
 
 
