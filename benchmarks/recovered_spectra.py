@@ -68,7 +68,7 @@ class SkinNodes:
         matrix = load_d65_matrix()
         self.f_mel, self.f_blood = _space(*F_MEL), _space(*F_BLOOD)
         f_mel, f_blood = torch.cartesian_prod(self.f_mel, self.f_blood).unbind(-1)
-        nuisance, shares, spread = _split_nuisance(skin.prior, f_mel)
+        nuisance, shares, spread = _split_nuisance(skin.prior, f_mel, f_blood)
         spectra, J = _linearise(skin, f_mel[:, None], f_blood[:, None], nuisance)
         _, _, leftover = skin.prior.condition(self.f_mel)
         left = (leftover @ matrix).repeat_interleave(len(self.f_blood), 0)
@@ -131,9 +131,11 @@ def _space(low: float, high: float, count: int) -> Float[Tensor, "node"]:
     return torch.linspace(math.log(low), math.log(high), count, dtype=torch.float64).exp()
 
 
-def _split_nuisance(prior: SkinPrior, f_mel: Tensor) -> tuple[Nuisance, Tensor, Tensor]:
+def _split_nuisance(
+    prior: SkinPrior, f_mel: Tensor, f_blood: Tensor
+) -> tuple[Nuisance, Tensor, Tensor]:
     """Return nuisance [skin, thickness], the thicknesses' shares, and the others' covariance."""
-    mean, covariance, _ = prior.condition(f_mel)
+    mean, covariance, _ = prior.condition(f_mel, f_blood)
     covariance = covariance.expand(len(f_mel), 4, 4)
     x, shares = (torch.from_numpy(a) for a in np.polynomial.hermite_e.hermegauss(THICKNESSES))
     deviation = covariance[:, 0, 0].sqrt()[:, None]
@@ -150,7 +152,8 @@ def _linearise(
     delta = 1e-4
 
     def expect(nuisance: Nuisance) -> Tensor:
-        return skin.predict(f_mel, f_blood, nuisance) + skin.prior.leftover_mean(f_mel, nuisance)
+        rest = skin.prior.leftover_mean(f_mel, nuisance, f_blood)
+        return skin.predict(f_mel, f_blood, nuisance) + rest
 
     here = expect(nuisance)
     J = [

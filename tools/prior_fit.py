@@ -16,7 +16,7 @@ from torch import Tensor
 from benchmarks.recovered_spectra import FittedSkin
 from benchmarks.whole_spectra import fit_skins
 from skinnet.physics import Nuisance, SkinOptics, SkinPrior
-from skinnet.physics.prior import TYPICAL_F_MEL
+from skinnet.physics.prior import TYPICAL_F_BLOOD, TYPICAL_F_MEL
 
 Record = dict[str, Any]
 
@@ -40,7 +40,7 @@ _PRIOR_WEIGHT, _SHRINKAGE, _MEAN_SHRINKAGE, _LEAST_VARIANCE = 0.15, 8.0, 4.0, 1e
 """Weight of the nuisance's prior in the reference; records that a prior of a tone counts as."""
 
 _PARAMETERS = 3
-"""Coefficients about which the skins of a tone vary: a mean, and a regression's two. What n records
+"""Coefficients about which the nuisance varies: a constant, melanin, and blood. What n records
 vary about them is less than what others will, by the final prediction error's (n + p) / (n - p),
 nearly 1 + 2 p / n (Akaike 1970)."""
 
@@ -86,14 +86,19 @@ def fit_prior(
 
 
 def describe_fits(fits: Statistics) -> Record:
-    """Describe the distribution of fits, and of what they leave over."""
+    """Describe the distribution of fits, and of what they leave over.
+
+    A fit is drawn towards its reference, so that what it leaves over goes with blood and nuisance.
+    """
     skins, weight = fits.skins, fits.weight
     known, residual = (~fits.residual.isnan()).double(), fits.residual.nan_to_num(nan=0.0)
-    coefficients, e = _regress(skins, weight)
+    coefficients, e = _regress(skins, weight, blood=True)
+    blood = skins[:, 1:2] - math.log(TYPICAL_F_BLOOD)
+    x = torch.cat([e, blood], -1)
     slopes = torch.linalg.solve(
-        e.T @ (weight[:, None] * e) + 1e-5 * torch.eye(4), e.T @ (weight[:, None] * residual)
+        x.T @ (weight[:, None] * x) + 1e-5 * torch.eye(5), x.T @ (weight[:, None] * residual)
     )
-    residual = (residual - e @ slopes) * known
+    residual = (residual - x @ slopes) * known
     overall = _compute_moment(e, weight)
     nuisance, means, leftover = [], [], []
     for tone in TONES:
@@ -128,7 +133,7 @@ def make_first_record() -> Record:
     near = _LEFTOVER**2 * torch.exp(-(bands[:, None] - bands).abs() / 4)
     leftover = near + (_LEFTOVER / 1.5) ** 2 * torch.eye(33)
     prior = torch.diag(torch.tensor(NUISANCE).double() ** 2)
-    return _make_record(leftover.expand(len(TONES), 33, 33), torch.zeros(2, 4), prior, (-3.1, 0.36))
+    return _make_record(leftover.expand(len(TONES), 33, 33), torch.zeros(3, 4), prior, (-3.1, 0.36))
 
 
 def _make_reference(fits: Statistics) -> Record:
@@ -138,7 +143,7 @@ def _make_reference(fits: Statistics) -> Record:
     """
     weight, known = fits.weight, (~fits.residual.isnan()).double()
     residual = fits.residual.nan_to_num(nan=0.0)
-    coefficients, e = _regress(fits.skins, weight)
+    coefficients, e = _regress(fits.skins, weight, blood=False)
     spread = torch.einsum("n,nij->ij", weight, fits.covariance)
     prior = torch.diag(torch.tensor(NUISANCE).double() ** 2)
     nuisance = (1 - _PRIOR_WEIGHT) * (_compute_moment(e, weight) + spread[2:, 2:])
@@ -170,15 +175,18 @@ def _make_record(
             "coefficients": coefficients.tolist(),
             "covariances": nuisance.expand(len(TONES), 4, 4).tolist(),
         },
-        "leftover": _factorise(leftover, torch.zeros(len(TONES), 33), torch.zeros(4, 33)),
+        "leftover": _factorise(leftover, torch.zeros(len(TONES), 33), torch.zeros(5, 33)),
     }
 
 
-def _regress(skins: Tensor, weight: Tensor) -> tuple[Tensor, Tensor]:
-    """Regress the nuisance on ln f_mel; return coefficients and deviations."""
-    tone = skins[:, 0] - math.log(TYPICAL_F_MEL)
-    design = torch.stack([torch.ones_like(tone), tone], -1)
-    normal = design.T @ (weight[:, None] * design) + torch.diag(torch.tensor([1e-3, 1e-3]).double())
+def _regress(skins: Tensor, weight: Tensor, blood: bool) -> tuple[Tensor, Tensor]:
+    """Regress the nuisance on the fractions; return coefficients and deviations."""
+    origin = torch.tensor([TYPICAL_F_MEL, TYPICAL_F_BLOOD], dtype=torch.float64).log()
+    pigments = skins[:, :2] - origin
+    if not blood:
+        pigments = pigments * torch.tensor([1.0, 0.0])
+    design = torch.cat([torch.ones_like(pigments[:, :1]), pigments], -1)
+    normal = design.T @ (weight[:, None] * design) + 1e-3 * torch.eye(3)
     coefficients = torch.linalg.solve(normal, design.T @ (weight[:, None] * skins[:, 2:]))
     return coefficients, skins[:, 2:] - design @ coefficients
 

@@ -13,20 +13,20 @@ from torch.distributions import Categorical, MixtureSameFamily, MultivariateNorm
 
 from skinnet.physics.nuisance import Nuisance
 
-TYPICAL_F_MEL = 0.12
-"""Melanin at which the regression of the nuisance has its origin."""
+TYPICAL_F_MEL, TYPICAL_F_BLOOD = 0.12, 0.045
+"""Fractions at which the regression of the nuisance has its origin."""
 
-_TYPICAL_F_BLOOD, _DEPTH_EXPONENT = 0.03, 1.5
+_REFERENCE_F_BLOOD, _DEPTH_EXPONENT = 0.03, 1.5
 """Blood at which the typical thickness is the preset's, and the exponent of their relation."""
 
 
 class SkinPrior:
     """Joint distribution of melanin, blood and nuisance over people, for the preset `measured`.
 
-    ln f_mel and ln f_blood follow a mixture of normal distributions. Given melanin, the nuisance is
-    normal about a mean that is linear in ln f_mel. What the model leaves over at each band is
-    normal about a mean that depends on ln f_mel and is linear in the nuisance. Both covariances
-    depend on ln f_mel.
+    ln f_mel and ln f_blood follow a mixture of normal distributions. Given both, the nuisance is
+    normal about a mean that is linear in ln f_mel and ln f_blood. What the model leaves over at
+    each band is normal about a mean that depends on ln f_mel and is linear in ln f_blood and
+    nuisance. Both covariances depend on ln f_mel.
 
     A skin's fractions and nuisance are those that fit its spectrum best: the distribution is that
     of such fits, and what is left over is what they leave.
@@ -82,10 +82,10 @@ class SkinPrior:
         component = torch.multinomial(self.weights, count, replacement=True, generator=rng)
         pigments = self.means[component] + _sample_normal(self.covariances[component], rng)
         f_mel, f_blood = pigments.exp().clamp(max=1.0).unbind(-1)
-        mean, covariance, leftover = self.condition(f_mel)
+        mean, covariance, leftover = self.condition(f_mel, f_blood)
         deviations = torch.stack(list(mean), -1) + _sample_normal(covariance, rng)
         nuisance = Nuisance(*deviations.unbind(-1))
-        rest = self.leftover_mean(f_mel, nuisance) + _sample_normal(leftover, rng)
+        rest = self.leftover_mean(f_mel, nuisance, f_blood) + _sample_normal(leftover, rng)
         return f_mel, f_blood, nuisance, rest
 
     def log_prob(
@@ -104,7 +104,7 @@ class SkinPrior:
         Returns:
             Density over (ln f_mel, ln f_blood, nuisance), float64.
         """
-        mean, covariance, _ = self.condition(f_mel)
+        mean, covariance, _ = self.condition(f_mel, f_blood)
         parts = torch.broadcast_tensors(*nuisance, *mean)
         deviations = torch.stack(parts[:4], -1) - torch.stack(parts[4:], -1)
         normal = MultivariateNormal(torch.zeros_like(deviations), covariance)
@@ -131,14 +131,15 @@ class SkinPrior:
         return density
 
     def condition(
-        self, f_mel: Float[Tensor, "*batch"]
+        self, f_mel: Float[Tensor, "*#batch"], f_blood: Float[Tensor, "*#batch"] | None = None
     ) -> tuple[
-        Nuisance, Float[Tensor, "*batch 4 4"], Float[Tensor, "*batch wavelength wavelength"]
+        Nuisance, Float[Tensor, "*#batch 4 4"], Float[Tensor, "*#batch wavelength wavelength"]
     ]:
-        """Compute the distributions of nuisance and of what is left over, given melanin.
+        """Compute the distributions of nuisance and of what is left over, given both fractions.
 
         Args:
             f_mel: Melanosome volume fraction, above 0.
+            f_blood: Blood volume fraction, above 0; None: a typical one.
 
         Returns:
             Mean and covariance of the nuisance, in the order of its fields, and the covariance of
@@ -147,30 +148,45 @@ class SkinPrior:
         near = self._weigh_tones(f_mel)
         nuisance = torch.einsum("...t,tij->...ij", near, self.nuisance)
         leftover = torch.einsum("...t,tij->...ij", near, self.leftover)
-        return Nuisance(*self._regress(f_mel).unbind(-1)), nuisance, leftover
+        return Nuisance(*self._regress(f_mel, f_blood).unbind(-1)), nuisance, leftover
 
     def leftover_mean(
-        self, f_mel: Float[Tensor, "*#batch"], nuisance: Nuisance
+        self,
+        f_mel: Float[Tensor, "*#batch"],
+        nuisance: Nuisance,
+        f_blood: Float[Tensor, "*#batch"] | None = None,
     ) -> Float[Tensor, "*batch wavelength"]:
         """Compute the mean of what the model leaves over, to be added to what it predicts.
 
         Args:
             f_mel: Melanosome volume fraction, above 0.
             nuisance: Deviations from the preset's constants.
+            f_blood: Blood volume fraction, above 0; None: a typical one.
 
         Returns:
             Measured reflectance (specular included) less that of the model, float64.
         """
-        deviations = torch.stack(torch.broadcast_tensors(*nuisance), -1) - self._regress(f_mel)
-        return self._weigh_tones(f_mel) @ self.leftover_means + deviations @ self.slopes
+        deviations = torch.stack(torch.broadcast_tensors(*nuisance), -1)
+        deviations = deviations - self._regress(f_mel, f_blood)
+        mean = self._weigh_tones(f_mel) @ self.leftover_means + deviations @ self.slopes[:4]
+        if f_blood is None:
+            return mean
+        blood = (f_blood.to(self.means.dtype) / TYPICAL_F_BLOOD).log()
+        return mean + blood[..., None] * self.slopes[4]
 
     def _weigh_tones(self, f_mel: Float[Tensor, "*batch"]) -> Float[Tensor, "*batch tone"]:
         tone = f_mel.to(self.means.dtype).log()
         return torch.softmax(-0.5 * ((tone[..., None] - self.tones) / self.width) ** 2, -1)
 
-    def _regress(self, f_mel: Float[Tensor, "*batch"]) -> Float[Tensor, "*batch 4"]:
+    def _regress(
+        self, f_mel: Float[Tensor, "*#batch"], f_blood: Float[Tensor, "*#batch"] | None
+    ) -> Float[Tensor, "*batch 4"]:
         tone = (f_mel.to(self.means.dtype) / TYPICAL_F_MEL).log()
-        return torch.stack([torch.ones_like(tone), tone], -1) @ self.coefficients
+        blood = torch.zeros_like(tone)
+        if f_blood is not None:
+            blood = (f_blood.to(self.means.dtype) / TYPICAL_F_BLOOD).log()
+        design = torch.broadcast_tensors(torch.ones_like(tone), tone, blood)
+        return torch.stack(design, -1) @ self.coefficients
 
     @staticmethod
     def typical_nuisance(f_blood: Float[Tensor, "*batch"]) -> Nuisance:
@@ -192,7 +208,7 @@ class SkinPrior:
             >>> SkinPrior.typical_nuisance(torch.tensor(0.03)).thickness.item()
             0.0
         """
-        thickness = _DEPTH_EXPONENT * (f_blood / _TYPICAL_F_BLOOD).log()
+        thickness = _DEPTH_EXPONENT * (f_blood / _REFERENCE_F_BLOOD).log()
         zero = torch.zeros_like(thickness)
         return Nuisance(thickness, zero, zero, zero)
 

@@ -44,7 +44,7 @@ class MeasuredSkins:
         """
         f_mel = face.skin.melanin.fraction.clamp(*_F_MEL)
         f_blood = torch.tensor(self._sample_blood(float(f_mel), rng))
-        mean, covariance, _ = self.prior.condition(f_mel.double())
+        mean, covariance, _ = self.prior.condition(f_mel.double(), f_blood.double())
         deviation = rng.multivariate_normal(np.zeros(len(mean)), covariance.numpy())
         nuisance = Nuisance(*(m + d for m, d in zip(mean, deviation, strict=True)))
         hemoglobin = face.skin.hemoglobin._replace(fraction=f_blood)

@@ -38,7 +38,9 @@ def test_log_prob_is_scipys(prior: SkinPrior) -> None:
         nuisance = Nuisance(*torch.tensor(values))
         fractions = torch.tensor([f_mel, f_blood], dtype=torch.float64)
         actual = prior.log_prob(*fractions, nuisance)
-        expected = _log_mixture(prior, f_mel, f_blood) + _log_nuisance(prior, f_mel, values)
+        expected = _log_mixture(prior, f_mel, f_blood) + _log_nuisance(
+            prior, f_mel, f_blood, values
+        )
         assert actual.item() == pytest.approx(expected, abs=1e-9)
 
 
@@ -48,10 +50,10 @@ def _log_mixture(prior: SkinPrior, f_mel: float, f_blood: float) -> float:
     return float(np.log(sum(w * multivariate_normal.pdf(x, m, S) for w, m, S in parts)))
 
 
-def _log_nuisance(prior: SkinPrior, f_mel: float, values: np.ndarray) -> float:
+def _log_nuisance(prior: SkinPrior, f_mel: float, f_blood: float, values: np.ndarray) -> float:
     near = np.exp(-0.5 * ((np.log(f_mel) - prior.tones.numpy()) / prior.width) ** 2)
     covariance = np.tensordot(near / near.sum(), prior.nuisance.numpy(), 1)
-    mean = np.array([1, np.log(f_mel / 0.12)]) @ prior.coefficients.numpy()
+    mean = np.array([1, np.log(f_mel / 0.12), np.log(f_blood / 0.045)]) @ prior.coefficients.numpy()
     return float(multivariate_normal.logpdf(values, mean, covariance))
 
 
@@ -107,10 +109,10 @@ def test_samples_have_the_moments_of_the_mixture(
 def test_what_is_sampled_besides_is_normal_given_melanin(
     prior: SkinPrior, sampled: tuple[torch.Tensor, torch.Tensor, Nuisance, torch.Tensor]
 ) -> None:
-    f_mel, _, nuisance, leftover = sampled
-    mean, covariance, spread = prior.condition(f_mel)
+    f_mel, f_blood, nuisance, leftover = sampled
+    mean, covariance, spread = prior.condition(f_mel, f_blood)
     deviations = torch.stack(nuisance, -1) - torch.stack(mean, -1)
-    rest = leftover - prior.leftover_mean(f_mel, nuisance)
+    rest = leftover - prior.leftover_mean(f_mel, nuisance, f_blood)
     for x, S in ((deviations, covariance), (rest, spread)):
         distance = (x * torch.linalg.solve(S, x[..., None])[..., 0]).sum(-1)
         size = x.shape[-1]
@@ -128,6 +130,25 @@ def test_the_leftover_mean_is_linear_in_the_nuisance(prior: SkinPrior) -> None:
     near = torch.exp(-0.5 * ((f_mel.log()[:, None] - prior.tones) / prior.width) ** 2)
     expected = near / near.sum(-1, keepdim=True) @ prior.leftover_means
     torch.testing.assert_close(further[0], expected)
+    with_blood = [prior.leftover_mean(f_mel, mean, f_mel.new_tensor(f)) for f in (0.02, 0.04, 0.08)]
+    torch.testing.assert_close(with_blood[1] - with_blood[0], with_blood[2] - with_blood[1])
+
+
+def test_no_blood_given_is_the_typical_one(prior: SkinPrior) -> None:
+    f_mel, typical = torch.tensor([0.05, 0.2]).double(), torch.tensor(0.045).double()
+    mean, covariance, leftover = prior.condition(f_mel)
+    others = prior.condition(f_mel, typical)
+    torch.testing.assert_close(torch.stack(mean), torch.stack(others[0]))
+    assert torch.equal(covariance, others[1]) and torch.equal(leftover, others[2])
+    torch.testing.assert_close(
+        prior.leftover_mean(f_mel, mean), prior.leftover_mean(f_mel, mean, typical)
+    )
+
+
+def test_more_blood_goes_with_a_thicker_dermis(prior: SkinPrior) -> None:
+    f_mel, f_blood = torch.tensor(0.1), torch.tensor([0.02, 0.08])
+    thin, thick = prior.condition(f_mel, f_blood)[0].thickness
+    assert thick > thin
 
 
 def test_typical_thickness_goes_with_blood() -> None:

@@ -32,9 +32,10 @@ def test_blood_and_nuisance_have_the_prior_of_their_melanin(skins: MeasuredSkins
     assert abs(blood.mean() - mean) < 0.1 * deviation
     assert blood.std() == pytest.approx(float(deviation), rel=0.1)
     thickness = torch.stack([skin.nuisance.thickness for skin in sampled])
-    expected, covariance, _ = SkinPrior().condition(f_mel)
-    assert thickness.mean().item() == pytest.approx(float(expected.thickness), abs=0.05)
-    assert thickness.std().item() == pytest.approx(float(covariance[0, 0].sqrt()), rel=0.1)
+    expected, covariance, _ = SkinPrior().condition(f_mel, blood.exp())
+    deviation = (thickness - expected.thickness) / covariance[..., 0, 0].sqrt()
+    assert deviation.mean().item() == pytest.approx(0, abs=0.1)
+    assert deviation.std().item() == pytest.approx(1, rel=0.1)
 
 
 def test_melanin_and_all_else_are_left(skins: MeasuredSkins) -> None:
