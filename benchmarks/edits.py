@@ -17,9 +17,9 @@ import torch
 from jaxtyping import Bool, Float, Float32
 from scipy.spatial import ConvexHull
 
+from benchmarks.recovered_spectra import load_d65_matrix
 from benchmarks.report import Results, main
 from benchmarks.skin_spectra import fill_bands, load_forearms, load_issa
-from benchmarks.spectra import load_d65_matrix
 from skinnet.appearance import PigmentEdit, SkinColour, SkinTexture, edit_texture
 from skinnet.physics import R_SURFACE, srgb_to_xyz
 
