@@ -34,7 +34,7 @@ class Constant(NamedTuple):
 CONSTANTS = (
     Constant("r_surface", "1", 0.04, 0.01, False, "Fresnel at n = 1.4 to 1.5, normal to diffuse"),
     Constant("f_oxy", "fraction", 0.75, 0.1, False, "Mitsou et al. 2014"),
-    Constant("r_vessel", "cm", 10e-4, 0.5, True, "venules of 5 to 20 um, Braverman 2000"),
+    Constant("r_vessel", "cm", 10e-4, 0.5, True, "capillaries and venules: 5 to 20 um"),
     Constant("d_pd", "cm", 0.2, 0.3, True, "Anderson & Parrish 1981"),
     Constant(
         "baseline", "1", 1.0, 0.1, True, "Jacques 1998: .244 + 85.3 exp(-(lambda - 154)/66.2)"
