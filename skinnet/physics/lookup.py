@@ -4,22 +4,22 @@ from typing import Any
 
 import numpy as np
 import torch
-import torch.nn.functional as F
 from jaxtyping import Float
 from torch import Tensor, nn
 
 from skinnet.physics._linear_algebra import apply_matrix
 from skinnet.physics._pigment_axis import PigmentAxis
+from skinnet.physics._table_sampling import extrapolate_ends, sample_table
 from skinnet.physics.inversion import F_BLOOD_RANGE, F_MEL_RANGE, SkinInverse
 from skinnet.physics.nuisance import Nuisance
 from skinnet.physics.reflectance import SkinReflectance
 
-_NODES = (96, 64)
+_NODES = (128, 64)
 """Nodes in f_mel and f_blood."""
 
 _BLOOD_SPACING = 0.8
 """Spacing of f_blood times the mean absorption of the dermis' blood in cm^-1; it balances the error
-of the colour against that of its gradient."""
+at small fractions against that at large ones."""
 
 
 class SkinLookup(nn.Module):
@@ -28,9 +28,9 @@ class SkinLookup(nn.Module):
     Colour is linear in the spectrum. So a table of spectra times the 33 x 3 matrix of a light and a
     camera is a table of colours, and the 33 bands are never computed for each pixel. Nodes are at
     equal steps of log(1 + f / spacing), where `spacing` is about the fraction that absorbs half of
-    the light. 0 and 1 are in the middle of the outermost cells, so that the gradient there is that
-    of a cell. A table of the same size spaced as u^3 has four times the error, and its gradient has
-    no limit at zero.
+    the light. 0 and 1 are in the middle of the outermost cells, where a cell's gradient is right. A
+    table of the same size spaced as u^3 has four times the error, and its gradient has no limit at
+    zero.
 
     The table is stored unless one of the constants is a parameter. Then it is computed on every
     call, and gradients reach the constant.
@@ -95,7 +95,7 @@ class SkinLookup(nn.Module):
         if nuisance is not None:
             nuisance = Nuisance(*(deviation[..., None, None] for deviation in nuisance))
         inner = self.reflectance.bands(f_mel[:, None], f_blood[None, :], nuisance)
-        return _extrapolate_ends(_extrapolate_ends(inner, -3), -2)
+        return extrapolate_ends(extrapolate_ends(inner, -3), -2)
 
     def _axis(self, axis: int) -> PigmentAxis:
         """Axis from 0 to 1, half a node after the first node of the table."""
@@ -147,6 +147,9 @@ class SkinLookup(nn.Module):
     ) -> Float[Tensor, "batch 3 height width"]:
         """Interpolate tables of colours bilinearly at the fractions of each pixel.
 
+        Gradients of the fractions are interpolated on their own. For every preset but `printed`
+        they are within 1 % of the closed form's at each pixel.
+
         Args:
             colours: One table for each image, from `colours`.
             f_mel: Melanosome volume fractions in [0, 1].
@@ -156,7 +159,7 @@ class SkinLookup(nn.Module):
             Linear RGB.
         """
         grid = torch.stack([self._grid_coordinate(f_blood, 1), self._grid_coordinate(f_mel, 0)], -1)
-        return F.grid_sample(colours, grid, align_corners=True, padding_mode="border")
+        return sample_table(colours, grid)
 
     def inverse(
         self,
@@ -190,18 +193,6 @@ class SkinLookup(nn.Module):
         # In place: an allocation the size of a map costs as much as the arithmetic on it.
         logarithm = torch.log(fraction + self.spacing[axis])
         return logarithm.mul_(per_node * scale).add_(per_node * (shift + 0.5) - 1)
-
-
-def _extrapolate_ends(values: Float[Tensor, "*shape"], axis: int) -> Float[Tensor, "*shape"]:
-    """Values at all nodes of an axis from those at 0, the inner nodes and 1.
-
-    The first and the last cell are lines through their inner node and their middle, so that
-    nothing is evaluated outside [0, 1].
-    """
-    low, second = values.narrow(axis, 0, 1), values.narrow(axis, 1, 1)
-    high, last = values.narrow(axis, -1, 1), values.narrow(axis, -2, 1)
-    inner = values.narrow(axis, 1, values.shape[axis] - 2)
-    return torch.cat([2 * low - second, inner, 2 * high - last], axis)
 
 
 def _refresh(lookup: SkinLookup, _: Any) -> None:

@@ -19,7 +19,11 @@ def test_decoder_reports_its_figures() -> None:
     found = decoder.measure(images=2, size=64, rounds=1)
     ways = {"fast", "bands", "grid", "grid_matmul"}
     figures = {f"speedup_vs_{way}" for way in ways - {"fast"}} | {"memory_ratio"}
-    assert set(found) == figures | {"max_error", "gradient_error", "seconds", "memory_mb"}
+    figures |= {"max_error", "gradient_error", "gradient_error_by_preset"}
+    assert set(found) == figures | {"seconds", "memory_mb"}
+    by_preset = found["gradient_error_by_preset"]
+    assert set(by_preset) == set(PRESETS) - {"printed"}
+    assert found["gradient_error"] == max(by_preset.values())
     assert set(found["seconds"]) == ways and set(found["memory_mb"]) == {"fast", "bands"}
     assert found["max_error"] <= 5e-4 and found["gradient_error"] <= 0.01
 

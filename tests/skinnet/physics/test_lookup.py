@@ -76,10 +76,23 @@ def test_batches_keep_their_own_colours(seed: int) -> None:
 def test_gradients_are_right_to_the_edges(corner: tuple[float, float]) -> None:
     lookup = SkinLookup(SkinReflectance(dtype=D))
     matrix = torch.rand(1, 33, 3, dtype=D, generator=torch.Generator().manual_seed(0))
-    f = [torch.full((1, 1, 1), value, dtype=D, requires_grad=True) for value in corner]
+    f_mel, f_blood = (torch.full((1, 1, 1), value, dtype=D) for value in corner)
+
+    def sample(matrix: torch.Tensor, *f: torch.Tensor) -> torch.Tensor:
+        return lookup.sample(lookup.colours(matrix), *f)
+
+    def closed_form(f_mel: torch.Tensor, f_blood: torch.Tensor) -> torch.Tensor:
+        return (lookup.reflectance.bands(f_mel, f_blood) @ matrix[0]).movedim(-1, -3)
+
     assert torch.autograd.gradcheck(
-        lambda matrix, *f: lookup.sample(lookup.colours(matrix), *f), (matrix.requires_grad_(), *f)
+        lambda matrix: sample(matrix, f_mel, f_blood), matrix.clone().requires_grad_()
     )
+    ours, exact = (
+        torch.autograd.functional.jacobian(colour, (f_mel, f_blood))
+        for colour in (lambda *f: sample(matrix, *f), closed_form)
+    )
+    for mine, true in zip(ours, exact, strict=True):
+        assert (mine - true).norm() < 0.01 * true.norm()
 
 
 def test_table_is_stored_and_refreshed() -> None:
