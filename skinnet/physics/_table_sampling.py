@@ -51,7 +51,10 @@ def sample_table(
     """
     image = _interpolate(table, grid.detach())
     # Without gradients there is one operator, so that exported graphs stay small.
-    return _SmoothGradient.apply(image, table.detach(), grid) if grid.requires_grad else image
+    if not grid.requires_grad:
+        return image
+    smooth: Tensor = _SmoothGradient.apply(image, table.detach(), grid)  # type: ignore[no-untyped-call]
+    return smooth
 
 
 class _SmoothGradient(torch.autograd.Function):
@@ -66,25 +69,27 @@ class _SmoothGradient(torch.autograd.Function):
     @once_differentiable
     def backward(ctx: Any, gradient: Tensor) -> tuple[Tensor, None, Tensor]:
         table, grid = ctx.saved_tensors
-        table = table.to(grid)
-        # In place: a map of three channels is the largest thing here.
-        by_axis = [_sample_slope(table, grid, axis).mul_(gradient).sum(1) for axis in (-1, -2)]
-        return gradient, None, torch.stack(by_axis, -1)
+        by_grid = torch.empty_like(grid)
+        for component, axis in enumerate((-1, -2)):
+            slope = _interpolate(_differentiate(table.to(grid), axis), grid)
+            # In place: allocating a map of three channels takes as long as filling it.
+            torch.sum(slope.mul_(gradient), 1, out=by_grid[..., component])
+        return gradient, None, by_grid
 
 
-def _sample_slope(table: Tensor, grid: Tensor, axis: int) -> Tensor:
-    """Derivative by the coordinate of an axis, interpolated between the middles of the cells."""
-    nodes = table.shape[axis]
-    slope = table.diff(dim=axis) * ((nodes - 1) / 2)
-    first, second = slope.narrow(axis, 0, 1), slope.narrow(axis, 1, 1)
-    last, previous = slope.narrow(axis, -1, 1), slope.narrow(axis, -2, 1)
-    # The outermost cells are lines through half a step, so their slope is that of a quarter.
-    ends = (4 * first - second) / 3, (4 * last - previous) / 3
-    slope = torch.cat([ends[0], slope.narrow(axis, 1, nodes - 3), ends[1]], axis)
-    # The middles span the nodes' interval less one cell.
-    scale = grid.new_ones(2)
-    scale[0 if axis == -1 else 1] = (nodes - 1) / (nodes - 2)
-    return _interpolate(slope, grid * scale)
+def _differentiate(table: Tensor, axis: int) -> Tensor:
+    """Derivative at the nodes by the coordinate of an axis."""
+    table = table.movedim(axis, 0)
+    # A difference is right in the middle of its cell. The range ends in the middles of the
+    # outermost, which are lines through half a step: their difference is right at a quarter.
+    middle = table.diff(dim=0) * ((len(table) - 1) / 2)
+    middle[0] = (4 * middle[0] - middle[1]) / 3
+    middle[-1] = (4 * middle[-1] - middle[-2]) / 3
+    node = torch.empty_like(table)
+    node[1:-1] = (middle[1:] + middle[:-1]) / 2
+    node[2:-2] -= (middle[3:] - middle[2:-1] - middle[1:-2] + middle[:-3]) / 16
+    node[0], node[-1] = 2 * middle[0] - node[1], 2 * middle[-1] - node[-2]
+    return node.movedim(0, axis)
 
 
 def _interpolate(table: Tensor, grid: Tensor) -> Tensor:
