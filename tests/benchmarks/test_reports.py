@@ -9,7 +9,7 @@ import torch
 from benchmarks import appearance, calibration, decoder, lookup, report
 from benchmarks.biofacenet import BioFaceNetShape
 from benchmarks.recovered_spectra import load_d65_matrix
-from skinnet.physics import SkinReflectance
+from skinnet.physics import PRESETS, SkinReflectance
 
 pytestmark = pytest.mark.slow
 
