@@ -2,7 +2,6 @@
 
 import numpy as np
 import torch
-from jaxtyping import Float
 from scipy.interpolate import RegularGridInterpolator
 
 from skinnet.physics import F_BLOOD_RANGE, Nuisance, SkinPrior
@@ -24,8 +23,8 @@ class MeasuredSkins:
     def __init__(self, prior: SkinPrior | None = None) -> None:
         self.prior = prior or SkinPrior()
         f_mel, f_blood = (
-            torch.logspace(*np.log10(ends), _NODES, dtype=torch.float64)
-            for ends in (_F_MEL, (1e-3, F_BLOOD_RANGE[1]))
+            torch.from_numpy(np.geomspace(low, high, _NODES))
+            for low, high in (_F_MEL, (1e-3, F_BLOOD_RANGE[1]))
         )
         density = self.prior.log_density(f_mel[:, None], f_blood).exp()
         share = density.cumsum(-1) / density.sum(-1, keepdim=True)
@@ -46,18 +45,10 @@ class MeasuredSkins:
         f_blood = torch.tensor(self._sample_blood(float(f_mel), rng))
         mean, covariance, _ = self.prior.condition(f_mel.double(), f_blood.double())
         deviation = rng.multivariate_normal(np.zeros(len(mean)), covariance.numpy())
-        nuisance = Nuisance(*(m + d for m, d in zip(mean, deviation, strict=True)))
+        nuisance = Nuisance(*((m + d).float() for m, d in zip(mean, deviation, strict=True)))
         hemoglobin = face.skin.hemoglobin._replace(fraction=f_blood)
-        return face._replace(
-            skin=face.skin._replace(
-                hemoglobin=hemoglobin, nuisance=Nuisance(*map(_as_float, nuisance))
-            )
-        )
+        return face._replace(skin=face.skin._replace(hemoglobin=hemoglobin, nuisance=nuisance))
 
     def _sample_blood(self, f_mel: float, rng: np.random.Generator) -> float:
         places = np.column_stack([np.full(_NODES, np.log(f_mel)), self._blood])
         return float(np.exp(np.interp(rng.random(), self._share(places), self._blood)))
-
-
-def _as_float(value: Float[torch.Tensor, ""]) -> Float[torch.Tensor, ""]:
-    return value.float()
