@@ -126,7 +126,7 @@ def _expand_normal(e: Tensor, slope: Tensor, noise: Tensor, change: Tensor) -> _
 def _predict(skin: FittedSkin, z: Tensor) -> Tensor:
     f_mel, f_blood = z[:, 0].exp(), z[:, 1].exp()
     nuisance = Nuisance(*z[:, 2:].unbind(-1))
-    rest = skin.prior.leftover_mean(f_mel, nuisance)
+    rest = skin.prior.leftover_mean(f_mel, nuisance, f_blood)
     return skin.predict(f_mel, f_blood, nuisance) + rest
 
 
@@ -138,11 +138,20 @@ def _load_noise(skin: FittedSkin, tone: Tensor, known: Tensor) -> Tensor:
 
 
 def _expand_nuisance(skin: FittedSkin, z: Tensor) -> _Expansion:
-    here, later = (skin.prior.condition((z[:, 0] + shift).exp()) for shift in (0.0, DELTA))
-    mean, S, shifted = torch.stack(list(here[0]), -1), here[1], torch.stack(list(later[0]), -1)
-    J = torch.eye(6, dtype=torch.float64)[2:].repeat(len(z), 1, 1)
-    J[:, :, 0] = (mean - shifted) / DELTA
-    return _expand_normal(z[:, 2:] - mean, J, S, (later[1] - S) / DELTA)
+    tone, blood = DELTA * torch.eye(6, dtype=torch.float64)[:2]
+    e, covariance = _compare_nuisance(skin, z)
+    darker, changed = _compare_nuisance(skin, z + tone)
+    redder, _ = _compare_nuisance(skin, z + blood)
+    by_pigments = torch.stack([darker - e, redder - e], -1) / DELTA
+    unit = torch.eye(4, dtype=torch.float64).expand(len(z), 4, 4)
+    slope = torch.cat([by_pigments, unit], -1)
+    return _expand_normal(e, slope, covariance, (changed - covariance) / DELTA)
+
+
+def _compare_nuisance(skin: FittedSkin, z: Tensor) -> tuple[Tensor, Tensor]:
+    """Return the deviations of the nuisance from the prior's mean, and its covariance."""
+    mean, covariance, _ = skin.prior.condition(z[:, 0].exp(), z[:, 1].exp())
+    return z[:, 2:] - torch.stack(list(mean), -1), covariance
 
 
 def _expand_pigments(skin: FittedSkin, z: Tensor) -> _Expansion:

@@ -89,7 +89,7 @@ def test_fit_of_a_whole_spectrum_is_the_most_probable_skin(
         f_mel, f_blood, nuisance = f_mel.exp(), f_blood.exp(), Nuisance(*nuisance)
         _, _, noise = skin.prior.condition(f_mel)
         residual = target - skin.predict(f_mel, f_blood, nuisance)
-        residual = residual - skin.prior.leftover_mean(f_mel, nuisance)
+        residual = residual - skin.prior.leftover_mean(f_mel, nuisance, f_blood)
         known = ~target.isnan()
         likelihood = [
             torch.distributions.MultivariateNormal(
