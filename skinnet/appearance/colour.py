@@ -42,7 +42,7 @@ class SkinColour(nn.Module):
         >>> colour = SkinColour(nodes=(32, 32))
         >>> features = torch.tensor([0.05, 0.03, 0.0, 0.0, 0.0])[:, None]
         >>> [round(channel, 2) for channel in colour(features)[:, 0].tolist()]
-        [0.59, 0.37, 0.29]
+        [0.6, 0.39, 0.34]
     """
 
     table: Tensor
