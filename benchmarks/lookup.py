@@ -6,6 +6,10 @@ with a uniform colour cast and with noise, so that no two texels are the same. `
 compared with scipy's cKDTree, which uses two workers, on the same colours. The two take turns in
 one process, and the least time of each is reported. `skin` is the same for skin alone, which is on
 the table's surface except for noise. That is the best case for a tree.
+
+`posterior` is the time of means and standard deviations of the same map with a table that is kept,
+the time that the table takes, and its interpolation error: 99th percentile over skins sampled from
+`SkinPrior`, in standard deviations, against the sum over all skins.
 """
 
 import numpy as np
@@ -23,9 +27,12 @@ from skinnet.physics import (
     NearestColour,
     SkinInverse,
     SkinLookup,
+    SkinPrior,
     SkinReflectance,
     load_spectrum_to_srgb,
 )
+from skinnet.physics._posterior_nodes import PosteriorNodes, tabulate_nodes
+from skinnet.physics._posterior_table import PosteriorTable
 from train.synthetic.face_painting import FaceCharts, paint_face
 from train.synthetic.head_cast import make_blank_cast
 from train.synthetic.scene import map_tensors
@@ -40,6 +47,9 @@ FACE = (slice(0.15, 0.85), slice(0.2, 0.8))
 CAST = (0.004, -0.002, 0.003)
 NOISE = 0.003
 """Linear RGB added to the map, and the standard deviation of the noise in white."""
+
+DEVIATIONS, SKINS = (0.005, 0.02), 2000
+"""Noise and white balance of the posterior, and number of skins that its error is measured on."""
 
 SAMPLE = 2000
 """Texels that are compared by exhaustive search; the others are compared with the tree."""
@@ -138,6 +148,42 @@ def measure_round_trip(
     }
 
 
+def measure_posterior(lookup: SkinLookup, matrix: Tensor, rgb: Tensor) -> Results:
+    """Measure seconds for a map, with its table and without, and the error of the table."""
+    prior, rng = SkinPrior(), torch.Generator().manual_seed(0)
+    nodes = tabulate_nodes(lookup.reflectance, matrix, prior, *DEVIATIONS)
+    f_mel, f_blood, nuisance, leftover = prior.sample(SKINS, rng)
+    colours = (lookup.reflectance.bands(f_mel, f_blood, nuisance) + leftover) @ matrix
+    colours += DEVIATIONS[0] * torch.randn(colours.shape, generator=rng, dtype=colours.dtype)
+    tabulated = PosteriorTable(nodes)(colours).double()
+    errors = []
+    for k, (mean, deviation) in zip((0, 3), sum_over_nodes(nodes, colours), strict=True):
+        errors.append(((tabulated[k] - mean) / deviation).abs())
+    inverse = lookup.inverse(matrix, (2, 2))
+    with_table = time_least(lambda: lookup.inverse(matrix, (2, 2)).posterior(rgb, *DEVIATIONS), 3)
+    inverse.posterior(rgb[:1], *DEVIATIONS)
+    return {
+        "seconds": time_least(lambda: inverse.posterior(rgb, *DEVIATIONS), REPEATS),
+        "seconds_with_table": with_table,
+        "table_seconds": time_least(
+            lambda: PosteriorTable(tabulate_nodes(lookup.reflectance, matrix, prior, *DEVIATIONS)),
+            REPEATS,
+        ),
+        "mel_error_p99": float(errors[0].quantile(0.99)),
+        "blood_error_p99": float(errors[1].quantile(0.99)),
+    }
+
+
+def sum_over_nodes(nodes: PosteriorNodes, colours: Tensor) -> list[tuple[Tensor, Tensor]]:
+    """Mean and standard deviation of f_mel and of f_blood without a table."""
+    normal = torch.distributions.MultivariateNormal(nodes.colour, nodes.covariance)
+    density = torch.cat([normal.log_prob(part[:, None]) for part in colours.split(100)])
+    weights = torch.softmax(nodes.log_prior + density, 1)
+    means, squares = weights @ nodes.moments[:, 4::2], weights @ nodes.moments[:, 5::2]
+    deviations = (squares - means**2).sqrt()
+    return [(means[:, k], deviations[:, k]) for k in (0, 1)]
+
+
 def measure(size: int = SIZE, nodes: int = NODES, rounds: int = ROUNDS) -> Results:
     """Measure every figure, by name."""
     lookup, matrix = (
@@ -159,6 +205,7 @@ def measure(size: int = SIZE, nodes: int = NODES, rounds: int = ROUNDS) -> Resul
         **measure_round_trip(lookup, matrix, inverse, min(size**2, 2**18)),
         "on_manifold": float(on.float().mean()),
         "skin": on_skin,
+        "posterior": measure_posterior(lookup, matrix, skin),
     }
 
 

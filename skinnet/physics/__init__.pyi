@@ -9,6 +9,7 @@ from .illuminants import daylight as daylight
 from .inversion import F_BLOOD_RANGE as F_BLOOD_RANGE
 from .inversion import F_MEL_RANGE as F_MEL_RANGE
 from .inversion import Inversion as Inversion
+from .inversion import Posterior as Posterior
 from .inversion import SkinInverse as SkinInverse
 from .lookup import SkinLookup as SkinLookup
 from .nearest_colour import NearestColour as NearestColour
@@ -41,6 +42,7 @@ __all__ = [
     "Inversion",
     "NearestColour",
     "Nuisance",
+    "Posterior",
     "SkinDecoder",
     "SkinInverse",
     "SkinLookup",
