@@ -76,6 +76,7 @@ def measure(
 def _measure(
     forearms: Tensor, issa: Tensor, radii: tuple[float, ...], peers: Path | None
 ) -> Results:
+    of_peers = _score_peers(peers, issa)  # First: it may refuse the directory.
     results: Results = {preset: score_preset(preset, forearms, issa) for preset in PRESETS}
     results["split_half"] = score_split_half(forearms, radii=radii)
     results |= score_colour_alone(forearms)
@@ -87,7 +88,7 @@ def _measure(
     for name, found in summarise_scores({"nist": of_forearms, "issa": of_issa}).items():
         results[name] = results.get(name, {}) | found
     results["measured"]["fixed"] = fixed
-    results["peers"] = _score_peers(peers, issa)
+    results["peers"] = of_peers
     return results
 
 
