@@ -39,6 +39,7 @@ format: $(READY)
 
 bench: $(READY)
 	$(BIN)/python -m benchmarks.spectra
+	$(BIN)/python -m benchmarks.edits
 	$(BIN)/python -m benchmarks.decoder
 	$(BIN)/python -m benchmarks.latency
 	$(BIN)/python -m benchmarks.fit
