@@ -9,13 +9,13 @@ from .illuminants import daylight as daylight
 from .inversion import F_BLOOD_RANGE as F_BLOOD_RANGE
 from .inversion import F_MEL_RANGE as F_MEL_RANGE
 from .inversion import Inversion as Inversion
-from .inversion import Posterior as Posterior
 from .inversion import SkinInverse as SkinInverse
 from .lookup import SkinLookup as SkinLookup
 from .nearest_colour import NearestColour as NearestColour
 from .nuisance import Nuisance as Nuisance
 from .optics import PRESETS as PRESETS
 from .optics import SkinOptics as SkinOptics
+from .posterior import Posterior as Posterior
 from .prior import SkinPrior as SkinPrior
 from .reflectance import SkinReflectance as SkinReflectance
 from .sources import load_camera as load_camera

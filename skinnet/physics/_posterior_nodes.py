@@ -91,10 +91,9 @@ def _predict(
     """Mean and covariance of colours over nuisance and left-over, of each skin.
 
     The nuisance takes eight values of equal weight, two standard deviations from its mean along
-    each principal axis. They have the mean, the covariance and the skewness of the normal
-    distribution: spherical-radial cubature (Arasaratnam & Haykin 2009). A line through the mean
-    would be off by a third of the posterior's standard deviation, because the depth of the dermis
-    varies by a factor of two.
+    each column of the covariance's root. They have the moments of the normal distribution up to
+    the third: spherical-radial cubature (Arasaratnam & Haykin 2009). Derivatives at the mean would
+    not do, because the depth of the dermis varies by a factor of two.
     """
     mean, nuisance_covariance, leftover = prior.condition(f_mel, f_blood)
     root = 2 * torch.linalg.cholesky(nuisance_covariance)

@@ -9,11 +9,11 @@ from jaxtyping import Bool, Float, Shaped
 from torch import Tensor
 
 from skinnet.errors import InputError
+from skinnet.physics._colour_posterior import ColourPosteriors, flatten_colours
 from skinnet.physics._colour_surface import ColourSurface
 from skinnet.physics._pigment_axis import PigmentAxis
-from skinnet.physics._posterior_nodes import tabulate_nodes
-from skinnet.physics._posterior_table import REACH, PosteriorTable
 from skinnet.physics.nearest_colour import NearestColour
+from skinnet.physics.posterior import Posterior
 from skinnet.physics.prior import SkinPrior
 from skinnet.physics.reflectance import SkinReflectance
 
@@ -31,16 +31,7 @@ _TOLERANCE = 0.02
 """Distance in linear RGB within which a colour is on the manifold. It is about three steps of 8-bit
 sRGB on pale skin. The colours of measured spectra differ by about as much from the model's."""
 
-_MAX_COLOUR = 1e6
-"""A colour with a larger value gives NaN, as does one that is NaN."""
-
 _COLOURS_AT_A_TIME, _ROWS_AT_A_TIME = 1 << 14, 16
-
-_LEAST_GAIN = 0.25
-"""Gain below which a posterior is called the prior: a correlation of one half."""
-
-_MAX_NOISE, _TABLES = 0.5, 4
-"""Largest standard deviation of a colour, and number of posterior tables that are kept."""
 
 
 class Inversion(NamedTuple):
@@ -60,40 +51,6 @@ class Inversion(NamedTuple):
     f_blood: Float[Tensor, "*shape"]
     offset: Float[Tensor, "*shape 3"]
     on_manifold: Bool[Tensor, "*shape"]
-
-
-class Posterior(NamedTuple):
-    """What a colour says about melanin and blood, and how much more than `SkinPrior` says.
-
-    A gain is 1 less the variance of ln f given the colour over its variance in the prior: 0 where
-    the colour says nothing, 1 where it says all. The prior of blood is that of skins with the
-    melanin that the colour shows. The posterior is about log-normal.
-
-    A colour that is NaN or infinite, or is no skin's, gives NaN.
-
-    Attributes:
-        f_mel: Mean of the melanosome volume fraction.
-        f_blood: Mean of the blood volume fraction.
-        f_mel_sd: Standard deviation of f_mel.
-        f_blood_sd: Standard deviation of f_blood.
-        f_mel_gain: Share of the prior's variance of ln f_mel that the colour removes, at most 1.
-        f_blood_gain: The same of ln f_blood, given melanin.
-        mel_is_prior: Whether f_mel is little more than the prior's: its gain is below .25, so the
-            colour lowers the standard deviation by less than 13 %, and among skins with the same
-            prior the mean correlates with the truth by less than one half.
-        blood_is_prior: The same of f_blood.
-        is_skin: Whether a skin of the prior has a colour within five standard deviations.
-    """
-
-    f_mel: Float[Tensor, "*shape"]
-    f_blood: Float[Tensor, "*shape"]
-    f_mel_sd: Float[Tensor, "*shape"]
-    f_blood_sd: Float[Tensor, "*shape"]
-    f_mel_gain: Float[Tensor, "*shape"]
-    f_blood_gain: Float[Tensor, "*shape"]
-    mel_is_prior: Bool[Tensor, "*shape"]
-    blood_is_prior: Bool[Tensor, "*shape"]
-    is_skin: Bool[Tensor, "*shape"]
 
 
 class SkinInverse:
@@ -150,10 +107,10 @@ class SkinInverse:
             )
         self._mel = PigmentAxis(*f_mel, nodes[0], spacing[0])
         self._blood = PigmentAxis(*f_blood, nodes[1], spacing[1])
-        self._reflectance = copy.deepcopy(reflectance).to("cpu", torch.float64)
-        self._matrix = matrix.detach().to("cpu", torch.float64)
-        self._posteriors: list[tuple[tuple[float, float, SkinPrior | None], PosteriorTable]] = []
-        half_steps = _tabulate_half_steps(self._reflectance, self._matrix, self._mel, self._blood)
+        exact = copy.deepcopy(reflectance).to("cpu", torch.float64)
+        double = matrix.detach().to("cpu", torch.float64)
+        self._posteriors = ColourPosteriors(exact, double)
+        half_steps = _tabulate_half_steps(exact, double, self._mel, self._blood)
         self.colours = torch.from_numpy(half_steps[::2, ::2].copy())
         self._nearest = NearestColour(half_steps[::2, ::2])
         self._nodes = np.ascontiguousarray(half_steps[::2, ::2].reshape(-1, 3).T)
@@ -179,10 +136,8 @@ class SkinInverse:
         Raises:
             InputError: Unless the last axis holds R, G and B in floating point.
         """
-        _check_colours(rgb)
-        dtype = torch.promote_types(rgb.dtype, torch.float32)
-        flat = rgb.detach().to("cpu", dtype).reshape(-1, 3).numpy()
-        usable = (np.abs(flat) < _MAX_COLOUR).all(1)
+        colours, where = flatten_colours(rgb)
+        flat, usable = colours.numpy(), where.numpy()
         columns = np.full((6, len(flat)), np.nan, flat.dtype)
         columns[5] = False
         columns[:, usable] = self._invert(flat if usable.all() else flat[usable], refine, tolerance)
@@ -191,7 +146,6 @@ class SkinInverse:
         )
         return Inversion(f_mel, f_blood, torch.stack(offset, -1), on_manifold.bool())
 
-    @torch.no_grad()
     def posterior(
         self,
         rgb: Shaped[Tensor, "*shape channels"],
@@ -204,16 +158,16 @@ class SkinInverse:
         Skins with the same melanin and blood differ in oxygenation, scattering, baseline and
         thickness, and by what the model leaves over. Each skin's colours are normal about its mean;
         the posterior is `SkinPrior` times their density. It is tabulated over the colours of skin
-        and interpolated; a table is kept for the next call with the same noise and prior. The
-        surface reflection of measured spectra is not part of a colour here, as in `__call__`.
+        and interpolated; a table is kept for the next call with the same noise and prior. A colour
+        is that of the skin itself, as in `__call__`: without the surface reflection of the
+        measured spectra that the prior was fitted to.
 
         Args:
             rgb: Linear RGB [*shape, 3], of any size and sign.
             noise: Standard deviation of each channel, linear RGB, in [0, .5]. The default is that
                 of a small camera's photograph in 8 bits.
-            white_balance: Standard deviation of R/G and of B/G, relative, in [0, .5]. Of .02 is a
-                good estimate; two photographs of one person differ by .2 where nothing is known of
-                the light.
+            white_balance: Standard deviation of R/G and of B/G, relative, in [0, .5]. .02 is that
+                of a good estimate; photographs of one person under unknown light differ by .2.
             prior: Distribution of skins; None: that of the preset `measured`.
 
         Returns:
@@ -225,7 +179,7 @@ class SkinInverse:
                 deviation out of its range; for constants other than those of the prior.
 
         Source:
-            Bayes' theorem; on the nuisance see Kennedy & O'Hagan 2001.
+            Bayes' theorem; the means and covariances of colours are Arasaratnam & Haykin's 2009.
 
         Example:
             >>> import torch
@@ -236,47 +190,7 @@ class SkinInverse:
             >>> found.is_skin.tolist(), found.blood_is_prior.tolist()
             ([True, True], [False, True])
         """
-        _check_colours(rgb)
-        for name, value in (("noise", noise), ("white_balance", white_balance)):
-            if not 0 <= value <= _MAX_NOISE:
-                raise InputError(
-                    f"{name} is a standard deviation in [0, {_MAX_NOISE:g}]; got {value:g}."
-                )
-        dtype = torch.promote_types(rgb.dtype, torch.float32)
-        flat = rgb.detach().to("cpu", dtype).reshape(-1, 3)
-        usable = (flat.abs() < _MAX_COLOUR).all(1)
-        table = self._tabulate_posterior(noise, white_balance, prior)
-        found = table(torch.where(usable[:, None], flat, 0.0))
-        is_skin = usable & (found[6] <= REACH)
-        found[:, ~is_skin] = torch.nan
-        values = [row.to(rgb.device, dtype).reshape(rgb.shape[:-1]) for row in found]
-        f_mel, f_mel_sd, f_mel_gain, f_blood, f_blood_sd, f_blood_gain, _ = values
-        return Posterior(
-            f_mel,
-            f_blood,
-            f_mel_sd,
-            f_blood_sd,
-            f_mel_gain,
-            f_blood_gain,
-            f_mel_gain < _LEAST_GAIN,
-            f_blood_gain < _LEAST_GAIN,
-            is_skin.to(rgb.device).reshape(rgb.shape[:-1]),
-        )
-
-    def _tabulate_posterior(
-        self, noise: float, white_balance: float, prior: SkinPrior | None
-    ) -> PosteriorTable:
-        """Return a table of an earlier call with the same arguments, or a new one."""
-        key = (noise, white_balance, prior)
-        for other, table in self._posteriors:
-            if other[:2] == key[:2] and other[2] is prior:
-                return table
-        if prior is None:
-            _check_constants(self._reflectance)
-        some = SkinPrior() if prior is None else prior
-        nodes = tabulate_nodes(self._reflectance, self._matrix, some, noise, white_balance)
-        self._posteriors = [*self._posteriors[1 - _TABLES :], (key, PosteriorTable(nodes))]
-        return self._posteriors[-1][1]
+        return self._posteriors(rgb, noise, white_balance, prior)
 
     def _invert(
         self, colours: Float[np.ndarray, "colours 3"], refine: bool, tolerance: float
@@ -348,31 +262,6 @@ def _check_axis(name: str, low: float, high: float, nodes: int) -> None:
         )
     if nodes < 2:
         raise InputError(f"A table has at least 2 nodes of {name}; got {nodes}.")
-
-
-def _check_colours(rgb: Tensor) -> None:
-    if rgb.ndim == 0 or rgb.shape[-1] != 3 or not rgb.is_floating_point():
-        raise InputError(
-            f"Colours are linear RGB in floating point, with R, G and B in the last axis; got "
-            f"{rgb.dtype} of shape {tuple(rgb.shape)}."
-        )
-
-
-def _check_constants(reflectance: SkinReflectance) -> None:
-    """Refuse a skin that is not the one whose fits to measured spectra made the prior."""
-    measured = dict(SkinReflectance("measured", dtype=torch.float64).named_buffers())
-    own = {**dict(reflectance.named_parameters()), **dict(reflectance.named_buffers())}
-    other = [
-        name
-        for name, value in measured.items()
-        if name not in own or not torch.allclose(own[name], value, rtol=1e-5, atol=0)
-    ]
-    if other or own.keys() - measured.keys():
-        raise InputError(
-            "SkinPrior is the distribution of skins with the constants of the preset `measured`; "
-            f"this skin differs in {', '.join(other or sorted(own.keys() - measured.keys()))}. "
-            "Use that preset, or hand in a prior that was fitted with these constants."
-        )
 
 
 @torch.no_grad()

@@ -68,11 +68,16 @@ def test_lookup_reports_its_figures() -> None:
     found = lookup.measure(size=96, nodes=96, rounds=1)
     pair = {"speedup_vs_kdtree", "speedup_with_building", "same_as_brute_force"}
     pair |= {f"{name}seconds" for name in ("query_", "build_", "kdtree_", "kdtree_build_")}
-    own = {"seconds", "refined_seconds", "table_seconds", "on_manifold", "skin"}
+    own = {"seconds", "refined_seconds", "table_seconds", "on_manifold", "skin", "posterior"}
     own |= {f"round_trip_{name}" for name in ("median", "p99", "max")}
     assert set(found) == pair | own and set(found["skin"]) == pair
     assert found["same_as_brute_force"] and found["skin"]["same_as_brute_force"]
     assert found["round_trip_median"] <= 1e-4 and found["round_trip_p99"] <= 1e-3
+    posterior = found["posterior"]
+    assert set(posterior) == {"mel_error_p99", "blood_error_p99"} | {
+        f"{name}seconds" for name in ("", "table_")
+    } | {"seconds_with_table"}
+    assert posterior["mel_error_p99"] < 0.05 and posterior["blood_error_p99"] < 0.05
 
 
 def test_the_map_of_the_lookup_has_no_equal_texels() -> None:
