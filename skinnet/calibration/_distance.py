@@ -51,8 +51,12 @@ class GamutDistance:
             self._half_steps = spline(np.arange(2 * count - 1) / 2)
         self._model = ColourSurface(self._half_steps)
 
-    def match(self, transform: Float[np.ndarray, "3 3"]) -> Match:
-        """Match every recorded colour to the closest point of the continuous surface."""
+    def match(self, transform: Float[np.ndarray, "3 3"], margin: float = 0.0) -> Match:
+        """Match every recorded colour to the closest point of the continuous surface.
+
+        Noise carries colours over the boundary. Where the closest point is on it, the component
+        along the surface counts only beyond `margin`; otherwise noise would stretch the gamut.
+        """
         compressed = self._compress(self._half_steps @ transform.T)
         surface, nodes = ColourSurface(compressed), compressed[::2, ::2]
         nearest = cKDTree(nodes.reshape(-1, 3)).query(self._colours.T)[1]
@@ -61,9 +65,10 @@ class GamutDistance:
         point = surface.differentiate(position)
         model = self._model.evaluate(position)
         gap = self._colours - point.colour
-        distance = np.linalg.norm(gap, axis=0)
         slope = 1 / np.hypot(transform @ model, self._level)
         normal = np.cross(point.row, point.column, axis=0)
+        gap = _shorten_along_surface(gap, normal, margin)
+        distance = np.linalg.norm(gap, axis=0)
         inside = np.all((position > 0) & (position < surface.last), axis=0)
 
         def differentiate(direction: Float[np.ndarray, "3 points"]) -> Float[np.ndarray, "_ 9"]:
@@ -84,3 +89,12 @@ class GamutDistance:
 
     def _compress(self, colours: Float[np.ndarray, "*shape"]) -> Float[np.ndarray, "*shape"]:
         return np.asarray(np.arcsinh(colours / self._level))
+
+
+def _shorten_along_surface(
+    gap: Float[np.ndarray, "3 points"], normal: Float[np.ndarray, "3 points"], margin: float
+) -> Float[np.ndarray, "3 points"]:
+    unit = normal / np.maximum(np.linalg.norm(normal, axis=0), 1e-12)
+    along = gap - (gap * unit).sum(0) * unit
+    length = np.maximum(np.linalg.norm(along, axis=0), 1e-12)
+    return np.asarray(gap - along * np.minimum(margin / length, 1.0))

@@ -1,6 +1,7 @@
 """The global colour transform between the skin model and recorded colours."""
 
 from dataclasses import dataclass
+from typing import NamedTuple
 
 import numpy as np
 from jaxtyping import Float, Shaped
@@ -21,8 +22,23 @@ _START_SCALES = (0.4, 0.63, 1.0, 1.6, 2.5)
 _ALTERNATIONS, _MAX_STEPS, _LAST_STEP = 5, 40, 1e-4
 """Alternations from each start; then most steps of a fit, and the relative step that ends it."""
 
-_CAUCHY = 2.4
-"""Scale of Cauchy's loss in standard deviations: 95 % efficient where the noise is normal."""
+_FREEDOM = 5.0
+"""Degrees of freedom of Student's t, the distribution of distances: 95 % efficient where the noise
+is normal."""
+
+_SCALE_STEPS = 12
+"""Steps of the likeliest scale."""
+
+_MARGIN = 2.0
+"""Standard deviations by which noise may carry colours over the boundary of the gamut."""
+
+_SLIDES, _HOPS, _LAST_GAIN = (0.06, 0.15), 3, 3e-4
+"""Changes of melanin, as shares of the rows of the grid, by which a start is moved to find the
+minima beside it; the most moves, and the gain of log-likelihood below which one is the last."""
+
+_AS_GOOD = 2.0, 0.07
+"""Log-likelihood by which another minimum explains the data as well: of all colours together, and
+of each colour that is not skin."""
 
 _NOISE_LEVELS = (0.2, 1.0)
 """Levels at which noise turns from constant to proportional, as shares of the median value: 8-bit
@@ -54,11 +70,12 @@ class Calibration:
         model_rms: Distance back, from those nodes of the model that have data near them.
         overlap: Share of the nodes that have data near them.
         uncertainty: Bound of the relative error of the transform (Frobenius norm) that holds in at
-            least 90 % of the trials of `benchmarks.calibration`. It is the standard error that
-            colours inside the gamut give, times the root of 1 + n (e / 4)^2: n is the number of
-            colours and e the share beyond five standard deviations. These are lips and brows
-            rather than skin, and those of them that are hidden in the noise displace the residuals
-            of all colours together.
+            least 90 % of the trials of `benchmarks.calibration`. Its first part is the standard
+            error that colours inside the gamut give, times the root of 1 + n (e / 4)^2: n is the
+            number of colours and e the share beyond five standard deviations. These are lips and
+            brows rather than skin, and those of them that are hidden in the noise displace the
+            residuals of all colours together. Its second part is the distance to the farthest
+            transform that explains the data as well; the two are added as squares.
         iterations: Steps of the last fit.
         converged: Whether its last step was small.
     """
@@ -83,7 +100,14 @@ class _Fit:
     @property
     def cost(self) -> float:
         """Mean negative log-likelihood of a colour, up to a constant."""
-        return float(np.log1p((self.match.distance / self.scale) ** 2).mean() + np.log(self.scale))
+        return _cost(self.match, self.scale)
+
+    @property
+    def outliers(self) -> float:
+        """Share of the colours inside the gamut that are not noisy skin."""
+        distance = self.match.distance[self.match.inside]
+        far = distance > _OUTLIER * _deviation(self.match)
+        return float(far.mean()) if len(far) else 1.0
 
 
 def calibrate(
@@ -96,8 +120,9 @@ def calibrate(
     Bidirectional nearest neighbours and least squares alternate from several overall scales, as in
     the paper. Each start is refined by robust least squares of the distance to the continuous
     surface, which discrete neighbours resolve too coarsely: the surface nearly slides along itself
-    in the direction that looks like a change of melanin. The start is the fit that explains the
-    data and has model colours near to them.
+    in the direction that looks like a change of melanin, where there are several minima. A
+    fit that explains the data and has model colours near to them is moved along that direction as
+    long as this helps. The last fit starts from the mean of all that explain the data as well.
 
     Args:
         data: Linear RGB of skin alone.
@@ -126,26 +151,80 @@ def calibrate(
     """
     grid, data = check_model(model), check_data(data)
     colours = np.random.default_rng(seed).permutation(data)[:_MAX_COLOURS]
-    transform, level = _choose_start(grid, colours[:_START_COLOURS])
+    transform, level, others = _choose_start(grid, colours[:_START_COLOURS])
     fit = _fit(GamutDistance(colours, grid, level), transform)
-    return _describe(grid.reshape(-1, 3), colours, fit)
+    return _describe(grid.reshape(-1, 3), colours, fit, others)
 
 
 def _choose_start(
     grid: Float[np.ndarray, "rows columns 3"], colours: Float[np.ndarray, "some 3"]
-) -> tuple[Float[np.ndarray, "3 3"], float]:
-    """Choose the transform and noise level that explain the colours and cover the model."""
+) -> tuple[Float[np.ndarray, "3 3"], float, list[Float[np.ndarray, "3 3"]]]:
+    """Choose transform and noise level that explain the colours and cover the model.
+
+    The third result is all transforms that do so as well under their noise level. The first is
+    their mean, as no one of them is likelier to be the true one.
+    """
     nodes = grid.reshape(-1, 3)
     ratio = np.diag(colours.mean(0) / nodes.mean(0))
     starts = [_alternate(colours, nodes, scale * ratio) for scale in _START_SCALES]
-    costs: list[tuple[float, Float[np.ndarray, "3 3"], float]] = []
-    for level in _NOISE_LEVELS:
-        distance = GamutDistance(colours, grid, level)
-        for fit in (_fit(distance, start) for start in starts):
-            coverage = _COVERAGE * distance.measure_coverage(fit.transform)
-            costs.append((fit.cost + distance.log_scale + coverage, fit.transform, level))
-    _, transform, level = min(costs, key=lambda cost: cost[0])
-    return transform, level
+    slides = _tabulate_slides(grid)
+    tries = [
+        sorted(_search(GamutDistance(colours, grid, level), starts, slides), key=_cost_of)
+        for level in _NOISE_LEVELS
+    ]
+    likelier = int(np.argmin([of_level[0].cost for of_level in tries]))
+    tolerance = _AS_GOOD[0] / len(colours) + _AS_GOOD[1] * tries[likelier][0].outliers
+    good = [
+        ((one.cost - of_level[0].cost) / tolerance, one.transform)
+        for of_level in tries
+        for one in of_level
+        if one.cost < of_level[0].cost + tolerance
+    ]
+    others = [transform for _, transform in good]
+    weights = np.exp([-2 * excess for excess, _ in good])
+    return np.average(others, axis=0, weights=weights), _NOISE_LEVELS[likelier], others
+
+
+class _Try(NamedTuple):
+    cost: float
+    transform: Float[np.ndarray, "3 3"]
+    outliers: float
+
+
+def _cost_of(one: _Try) -> float:
+    return one.cost
+
+
+def _search(
+    distance: GamutDistance,
+    starts: list[Float[np.ndarray, "3 3"]],
+    slides: list[Float[np.ndarray, "3 3"]],
+) -> list[_Try]:
+    """Fit from each start, then from the neighbours of the best as long as one is better."""
+
+    def attempt(start: Float[np.ndarray, "3 3"]) -> _Try:
+        fit = _descend(distance, start)
+        coverage = _COVERAGE * distance.measure_coverage(fit.transform)
+        return _Try(fit.cost + distance.log_scale + coverage, fit.transform, fit.outliers)
+
+    tries = [attempt(start) for start in starts]
+    for _ in range(_HOPS):
+        best = min(tries, key=_cost_of)
+        tries += [attempt(best.transform @ slide) for slide in slides]
+        if min(tries, key=_cost_of).cost > best.cost - _LAST_GAIN:
+            break
+    return tries
+
+
+def _tabulate_slides(grid: Float[np.ndarray, "rows columns 3"]) -> list[Float[np.ndarray, "3 3"]]:
+    """Transforms that bring the model's colours near to those with more or less melanin."""
+    slides = []
+    for rows in (max(1, round(share * len(grid))) for share in _SLIDES):
+        pair = grid[rows:].reshape(-1, 3), grid[:-rows].reshape(-1, 3)
+        for source, target in (pair, pair[::-1]):
+            weight = 1 / (np.linalg.norm(target, axis=1, keepdims=True) + 1e-12)
+            slides.append(np.linalg.lstsq(source * weight, target * weight)[0].T)
+    return slides
 
 
 def _alternate(
@@ -174,19 +253,27 @@ def _alternate(
 
 
 def _fit(distance: GamutDistance, transform: Float[np.ndarray, "3 3"]) -> _Fit:
-    """Minimise Cauchy's loss of the distances by reweighted Levenberg-Marquardt steps."""
-    match, damping, relative_step = distance.match(transform), 1e-3, float("inf")
+    """Fit without a margin at the boundary, then with that of the noise which this leaves."""
+    first = _descend(distance, transform)
+    return _descend(distance, first.transform, _MARGIN * _deviation(first.match))
+
+
+def _descend(
+    distance: GamutDistance, transform: Float[np.ndarray, "3 3"], margin: float = 0.0
+) -> _Fit:
+    """Maximise the likelihood of transform and scale by reweighted Levenberg-Marquardt steps."""
+    match, damping, relative_step = distance.match(transform, margin), 1e-3, float("inf")
     scale, iterations = _scale(match), 0
     while iterations < _MAX_STEPS and relative_step > _LAST_STEP:
         weights = 1 / (1 + (match.distance / scale) ** 2)
         weighted = match.derivatives.T * weights
         hessian, gradient = weighted @ match.derivatives, weighted @ match.distance
-        cost = np.log1p((match.distance / scale) ** 2).sum()
+        cost = _cost(match, scale)
         while damping < 1e6:
             damped = hessian + damping * np.diag(np.diag(hessian))
             step = -(_invert(damped) @ gradient).reshape(3, 3)
-            after = distance.match(transform + step)
-            if np.log1p((after.distance / scale) ** 2).sum() <= cost:
+            after = distance.match(transform + step, margin)
+            if _cost(after, scale) <= cost:
                 break
             damping *= 8
         else:
@@ -198,9 +285,27 @@ def _fit(distance: GamutDistance, transform: Float[np.ndarray, "3 3"]) -> _Fit:
     return _Fit(transform, match, scale, iterations, iterations < _MAX_STEPS)
 
 
+def _cost(match: Match, scale: float) -> float:
+    tail = np.log1p((match.distance / scale) ** 2).mean()
+    return float((_FREEDOM + 1) / 2 * tail + np.log(scale))
+
+
 def _scale(match: Match) -> float:
-    """Scale of the loss, from the median distance of normal noise."""
-    return _CAUCHY * 1.4826 * float(np.median(match.distance)) + 1e-9
+    """Likeliest scale, that of Student's t times the root of its degrees of freedom.
+
+    It is a minimum of the same cost as the transform. With the median's scale, steps of the
+    transform could increase the cost, and minima were told apart by their medians.
+    """
+    square = match.distance**2
+    scale = _FREEDOM * _deviation(match) ** 2
+    for _ in range(_SCALE_STEPS):
+        scale = (_FREEDOM + 1) * float(np.mean(square / (1 + square / scale))) + 1e-18
+    return float(scale**0.5)
+
+
+def _deviation(match: Match) -> float:
+    """Standard deviation of normal noise with the median of the distances."""
+    return 1.4826 * float(np.median(match.distance)) + 1e-9
 
 
 def _invert(information: Float[np.ndarray, "9 9"]) -> Float[np.ndarray, "9 9"]:
@@ -210,19 +315,22 @@ def _invert(information: Float[np.ndarray, "9 9"]) -> Float[np.ndarray, "9 9"]:
     return np.asarray(np.linalg.pinv(correlation, 1e-14, True) / np.outer(scale, scale))
 
 
-def _estimate_uncertainty(fit: _Fit) -> float:
+def _estimate_uncertainty(fit: _Fit, others: list[Float[np.ndarray, "3 3"]]) -> float:
     """Relative bound of the transform's error; `Calibration` says how it is made."""
-    inside, deviation = fit.match.inside, fit.scale / _CAUCHY
+    inside, deviation = fit.match.inside, _deviation(fit.match)
     distance, normals = fit.match.distance[inside], fit.match.normals[inside]
     weights = 1 / (1 + (distance / fit.scale) ** 2) / deviation**2
     variance = np.trace(_invert((normals.T * weights) @ normals))
-    outliers = float(np.mean(distance > _OUTLIER * deviation)) if len(distance) else 1.0
-    inflation = 1 + fit.match.inside.size * (_HIDDEN * outliers) ** 2
-    return float(np.sqrt(variance * inflation) / np.linalg.norm(fit.transform))
+    inflation = 1 + fit.match.inside.size * (_HIDDEN * fit.outliers) ** 2
+    spread = max(float(np.linalg.norm(other - fit.transform)) for other in others)
+    return float(np.sqrt(variance * inflation + spread**2) / np.linalg.norm(fit.transform))
 
 
 def _describe(
-    nodes: Float[np.ndarray, "nodes 3"], colours: Float[np.ndarray, "colours 3"], fit: _Fit
+    nodes: Float[np.ndarray, "nodes 3"],
+    colours: Float[np.ndarray, "colours 3"],
+    fit: _Fit,
+    others: list[Float[np.ndarray, "3 3"]],
 ) -> Calibration:
     moved, length = nodes @ fit.transform.T, root_mean_square(colours)
     data_rms = root_mean_square(colours - (fit.transform @ fit.match.model).T)
@@ -243,7 +351,7 @@ def _describe(
         data_rms,
         model_rms,
         float(near.mean()),
-        _estimate_uncertainty(fit),
+        _estimate_uncertainty(fit, others),
         fit.iterations,
         fit.converged,
     )
