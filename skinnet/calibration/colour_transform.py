@@ -36,6 +36,9 @@ _SLIDES, _HOPS, _LAST_GAIN = (0.06, 0.15), 3, 3e-4
 """Changes of melanin, as shares of the rows of the grid, by which a start is moved to find the
 minima beside it; the most moves, and the gain of log-likelihood below which one is the last."""
 
+_FARTHEST = 3
+"""Number of other transforms that are fitted to all colours, for the uncertainty."""
+
 _AS_GOOD = 2.0, 0.07
 """Log-likelihood by which another minimum explains the data as well: of all colours together, and
 of each colour that is not skin."""
@@ -152,7 +155,11 @@ def calibrate(
     grid, data = check_model(model), check_data(data)
     colours = np.random.default_rng(seed).permutation(data)[:_MAX_COLOURS]
     transform, level, others = _choose_start(grid, colours[:_START_COLOURS])
-    fit = _fit(GamutDistance(colours, grid, level), transform)
+    distance = GamutDistance(colours, grid, level)
+    fit = _fit(distance, transform)
+    # The farthest of them; more colours may bring them together.
+    others = sorted(others, key=lambda one: -float(np.linalg.norm(one - fit.transform)))
+    others = [_descend(distance, one).transform for one in others[:_FARTHEST]]
     return _describe(grid.reshape(-1, 3), colours, fit, others)
 
 
