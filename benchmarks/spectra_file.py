@@ -21,7 +21,7 @@ def read_spectra(path: Path) -> Float[Tensor, "record wavelength"]:
         InputError: The file is absent or has other columns, or a value is no reflectance.
     """
     try:
-        rows = list(csv.reader(path.read_text(encoding="utf-8").splitlines()))
+        rows = list(csv.reader(path.read_text(encoding="utf-8-sig").splitlines()))
     except (OSError, UnicodeDecodeError, csv.Error) as error:
         raise InputError(f"{path} cannot be read as a table of spectra: {error}.") from error
     rows = [row for row in rows if row and not row[0].startswith("#")]

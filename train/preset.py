@@ -27,6 +27,6 @@ def check_preset(trainer: Trainer | None, preset: str, data: str) -> None:
     if (own := task.model.config.optics) != preset:
         raise InputError(
             f"{data} have the skin of the preset {preset}, and the model that of {own}, in which "
-            f"the same fractions have other colours. Add --model.optics {preset}, or make the "
-            f"data with {own}."
+            f"the same fractions have other colours. Add --model.optics {preset}, or give the data "
+            f"{own}: --data.init_args.optics {own}, or .synthetic.optics for portraits."
         )

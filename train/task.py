@@ -208,7 +208,8 @@ class SkinTask(LightningModule):
             raise InputError(
                 f"{source} was trained with the skin of the preset {preset} and this run has "
                 f"{own}, in which the same fractions have other colours; add --model.optics "
-                f"{preset}."
+                f"{preset} and the same for the data (--data.init_args.optics, or "
+                ".synthetic.optics for portraits)."
             )
 
     def on_load_checkpoint(self, checkpoint: dict[str, Any]) -> None:

@@ -21,6 +21,11 @@ _MAX_DEVIATION, _TABLES = 0.5, 4
 """Largest standard deviation of noise and of white balance, and number of tables that are kept."""
 
 
+_MOST_MELANIN = 0.5
+"""Mean melanin beyond which a colour is no skin's. The darkest measured skins have .43. Black, such
+as the border of a masked picture, has more."""
+
+
 class ColourPosteriors:
     """Posteriors of a skin's colours, for any noise and white balance.
 
@@ -45,7 +50,7 @@ class ColourPosteriors:
             _check_deviation(name, value)
         table = self.tabulate(noise, white_balance, prior)
         found = table(flat if usable.all() else torch.where(usable[:, None], flat, 0.0))
-        is_skin = usable & (found[6] <= REACH)
+        is_skin = usable & (found[6] <= REACH) & (found[0] <= _MOST_MELANIN)
         found[:, ~is_skin] = torch.nan
         values = [row.to(rgb.device, flat.dtype).reshape(rgb.shape[:-1]) for row in found]
         f_mel, f_mel_sd, f_mel_gain, f_blood, f_blood_sd, f_blood_gain, _ = values
@@ -68,7 +73,7 @@ class ColourPosteriors:
         for *deviations, other, table in self._tables:
             if deviations == [noise, white_balance] and other is prior:
                 return table
-        if prior is None:
+        if prior is None or prior.is_shipped:
             _check_constants(self._reflectance)
         some = SkinPrior() if prior is None else prior
         nodes = tabulate_nodes(self._reflectance, self._matrix, some, noise, white_balance)

@@ -5,6 +5,7 @@ from jaxtyping import Float
 from torch import Tensor, nn
 
 from skinnet.errors import InputError
+from skinnet.physics.nuisance import Nuisance
 
 _ROUNDING = 1e-5
 """How far outside [0, 1] a fraction may lie because of interpolation and finite differences."""
@@ -47,3 +48,35 @@ def check_fraction(
         hint = " Was it given in percent?" if wrong > 1 else ""
         raise InputError(f"{name} is a volume fraction in [0, 1]; got {wrong:g}.{hint}")
     return fraction
+
+
+_LARGEST = {"thickness": 10.0, "scattering": 10.0, "oxygenation": 1.0, "baseline": 10.0}
+"""Deviations that are larger are a slip, such as percent. A factor of e^10 is beyond any skin."""
+
+
+def check_nuisance(nuisance: Nuisance, like: Tensor) -> Nuisance:
+    """Return deviations as tensors on the device of `like`.
+
+    Nothing is checked in a graph that is being compiled or exported.
+
+    Raises:
+        InputError: For what is no `Nuisance`, and for a deviation that is NaN or too large.
+    """
+    if not isinstance(nuisance, Nuisance):
+        raise InputError(f"A skin's deviations are a Nuisance; got {type(nuisance).__name__}.")
+    deviations = Nuisance(
+        *(
+            one if isinstance(one, Tensor) else torch.as_tensor(one, dtype=like.dtype)
+            for one in nuisance
+        )
+    )
+    if torch.compiler.is_compiling():
+        return deviations
+    for (name, most), value in zip(_LARGEST.items(), deviations, strict=True):
+        wrong = value.detach()[~(value.detach().abs() <= most)]
+        if wrong.numel():
+            raise InputError(
+                f"{name} is a deviation from the preset in [-{most:g}, {most:g}]; got "
+                f"{wrong.flatten()[0]:g}."
+            )
+    return deviations

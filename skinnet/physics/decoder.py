@@ -141,6 +141,8 @@ class SkinDecoder(nn.Module):
     ) -> Float[Tensor, "*batch 3 height width"]:
         """Render the diffuse albedo: the colour of evenly lit skin (equation 4).
 
+        Nothing is checked here, for graphs that are trained or exported; `forward` checks.
+
         Args:
             f_mel: Melanosome volume fraction.
             f_blood: Blood volume fraction.

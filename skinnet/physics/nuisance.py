@@ -10,7 +10,8 @@ from torch import Tensor
 class Nuisance(NamedTuple):
     """Deviations of a skin from the constants of its preset, for skins of any leading shape.
 
-    All zero is the preset. `SkinPrior` has their distribution.
+    All zero is the preset. `SkinPrior` has their distribution, whose mean is another: measured
+    skins scatter more than the preset, and the more so the darker they are.
 
     Attributes:
         thickness: Natural logarithm of the thickness of the dermis over the preset's `d_pd`.

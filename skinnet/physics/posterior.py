@@ -7,13 +7,15 @@ from torch import Tensor
 
 
 class Posterior(NamedTuple):
-    """What a colour says about melanin and blood, and how much more than `SkinPrior` says.
+    """What a colour says about melanin and blood, and how much it adds to `SkinPrior`.
 
-    A gain is 1 less the variance of ln f given the colour over its variance in the prior: 0 where
-    the colour says nothing, 1 where it says all. The prior of blood is that of skins with the
-    melanin that the colour shows. The posterior is about log-normal.
+    A gain is a variance reduction: 1 minus the variance of ln f given the colour over its variance
+    in the prior. It is 0 where the colour says nothing and 1 where it says all; numerically it may
+    be slightly negative. The prior of blood is that of skins with the melanin that the colour
+    shows. The posterior is approximately log-normal.
 
-    A colour that is NaN or infinite, or is no skin's, gives NaN.
+    A colour that is NaN or infinite, or that no skin has, gives NaN. Grey is a colour that some
+    skin may have: `is_skin` does not segment a picture.
 
     Attributes:
         f_mel: Mean of the melanosome volume fraction.
@@ -21,12 +23,12 @@ class Posterior(NamedTuple):
         f_mel_sd: Standard deviation of f_mel.
         f_blood_sd: Standard deviation of f_blood.
         f_mel_gain: Share of the prior's variance of ln f_mel that the colour removes, at most 1.
-        f_blood_gain: The same of ln f_blood, given melanin.
-        mel_is_prior: Whether f_mel is little more than the prior's: its gain is below .25, so the
-            colour lowers the standard deviation by less than 13 %, and among skins with the same
-            prior the mean correlates with the truth by less than one half.
-        blood_is_prior: The same of f_blood.
-        is_skin: Whether a skin of the prior has a colour within five standard deviations.
+        f_blood_gain: The same for ln f_blood, given melanin.
+        mel_is_prior: Whether f_mel is little more than the prior's mean: its gain is below .25, so
+            that the colour lowers the standard deviation by less than 13 %.
+        blood_is_prior: The same for f_blood.
+        is_skin: Whether the colour lies within five standard deviations of a skin of the prior, and
+            its mean melanin is at most .5.
     """
 
     f_mel: Float[Tensor, "*shape"]

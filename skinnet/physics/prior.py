@@ -11,6 +11,7 @@ from jaxtyping import Float
 from torch import Tensor
 from torch.distributions import Categorical, MixtureSameFamily, MultivariateNormal
 
+from skinnet.errors import InputError
 from skinnet.physics.nuisance import Nuisance
 
 TYPICAL_F_MEL, TYPICAL_F_BLOOD = 0.12, 0.045
@@ -32,7 +33,8 @@ class SkinPrior:
     of such fits, and what is left over is what they leave.
 
     Args:
-        record: What `python -m tools.fit_skin` fits; None: the distribution that was fitted to 100
+        record: The content of `tables/prior.json`, which `python -m tools.fit_skin --write`
+            writes; None: the distribution that was fitted to 100
             forearms (NIST) and 348 skins of many peoples (ISSA).
 
     Source:
@@ -41,15 +43,17 @@ class SkinPrior:
 
     Example:
         >>> import torch
-        >>> from skinnet.physics import SkinPrior, SkinReflectance
+        >>> from skinnet.physics import SkinPrior, SkinReflectance, include_specular
         >>> rng = torch.Generator().manual_seed(0)
         >>> f_mel, f_blood, nuisance, leftover = SkinPrior().sample(100, rng)
-        >>> spectra = SkinReflectance()(f_mel, f_blood, nuisance) + leftover
-        >>> tuple(spectra.shape), bool((spectra > -0.05).all())
+        >>> skin = SkinReflectance()(f_mel, f_blood, nuisance)
+        >>> measured = include_specular(skin) + leftover
+        >>> tuple(measured.shape), bool((measured > 0).all())
         ((100, 33), True)
     """
 
     def __init__(self, record: Mapping[str, Any] | None = None) -> None:
+        self.is_shipped = record is None
         record = _read() if record is None else record
         self.weights, self.means, self.covariances = (
             _to_tensor(record["mixture"][name]) for name in ("weights", "means", "covariances")
@@ -76,8 +80,8 @@ class SkinPrior:
             rng: Random numbers.
 
         Returns:
-            f_mel, f_blood, nuisance, and the reflectance at each band that the model leaves over;
-            float64.
+            f_mel, f_blood, nuisance, and the measured reflectance (specular included) at each band
+            that the model leaves over, to be added to `include_specular` of the model's; float64.
         """
         component = torch.multinomial(self.weights, count, replacement=True, generator=rng)
         pigments = self.means[component] + _sample_normal(self.covariances[component], rng)
@@ -202,12 +206,20 @@ class SkinPrior:
         Returns:
             The thickness; all else is the preset's.
 
+        Raises:
+            InputError: For a fraction that is not above 0.
+
         Example:
             >>> import torch
             >>> from skinnet.physics import SkinPrior
             >>> SkinPrior.typical_nuisance(torch.tensor(0.03)).thickness.item()
             0.0
         """
+        if not (f_blood.detach() > 0).all():
+            raise InputError(
+                f"f_blood is a volume fraction above 0; got {float(f_blood.detach().min()):g}. "
+                "Skin without blood has no typical thickness."
+            )
         thickness = _DEPTH_EXPONENT * (f_blood / _REFERENCE_F_BLOOD).log()
         zero = torch.zeros_like(thickness)
         return Nuisance(thickness, zero, zero, zero)

@@ -6,7 +6,7 @@ import torch
 from jaxtyping import Float
 from torch import Tensor, nn
 
-from skinnet.physics._parameters import check_fraction, register_constant
+from skinnet.physics._parameters import check_fraction, check_nuisance, register_constant
 from skinnet.physics.nuisance import Nuisance
 from skinnet.physics.optics import SkinOptics
 from skinnet.physics.spectra import WAVELENGTHS
@@ -93,10 +93,13 @@ class SkinReflectance(nn.Module):
             Reflectance in [0, 1] at the 33 bands, in the last axis.
 
         Raises:
-            InputError: For a fraction that is NaN, negative or above one; it is a `ValueError`.
+            InputError: For a fraction that is NaN, negative or above one, or a deviation that is
+                NaN or larger than any skin's; it is a `ValueError`.
         """
         f_mel = check_fraction("f_mel", f_mel, like=self.wavelengths)
         f_blood = check_fraction("f_blood", f_blood, like=self.wavelengths)
+        if nuisance is not None:
+            nuisance = check_nuisance(nuisance, like=self.wavelengths)
         return self.bands(f_mel, f_blood, nuisance)
 
     def bands(

@@ -215,7 +215,7 @@ def test_weights_of_another_preset_are_refused(
     start = tmp_path / "start.safetensors"
     SkinAutoencoder(AutoencoderConfig("paper", widths=(4, 8))).save_pretrained(start)
     assert fit(tmp_path / "run", f"--model.weights={start}") == 2
-    assert "add --model.optics paper." in capsys.readouterr().err
+    assert "add --model.optics paper and the same for the data" in capsys.readouterr().err
 
 
 def test_a_run_is_not_continued_with_another_preset(

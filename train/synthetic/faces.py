@@ -1,6 +1,6 @@
 """Synthetic faces as training data: heads are cast once and rendered anew on every step."""
 
-from functools import partial
+from functools import cached_property, partial
 from pathlib import Path
 from typing import Any
 
@@ -128,10 +128,19 @@ class SyntheticFaces(LightningDataModule):
         self.geometry, self.seed, self.workers = Path(geometry), seed, workers
         self.skins_file = None if skins is None else Path(skins)
         self.skins: ModelSkins | None = None
-        self.optics, self.decoder = optics, SkinDecoder(optics)
-        # The prior belongs to this preset; the others have none.
-        self.measured = MeasuredSkins() if optics == "measured" else None
+        self.optics = optics
         self.buffers: dict[str, HeadBuffers] = {}
+
+    @cached_property
+    def decoder(self) -> SkinDecoder:
+        """The colours of skin, of the preset."""
+        # Not in the constructor, whose errors the parser replaces with its own.
+        return SkinDecoder(self.optics)
+
+    @cached_property
+    def measured(self) -> MeasuredSkins | None:
+        """Blood and nuisance of faces; None for presets that have no prior."""
+        return MeasuredSkins() if self.optics == "measured" else None
 
     @property
     def description(self) -> str:

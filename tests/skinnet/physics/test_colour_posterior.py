@@ -8,7 +8,7 @@ from skinnet.errors import InputError
 from skinnet.physics._colour_posterior import ColourPosteriors
 from skinnet.physics.lookup import SkinLookup
 from skinnet.physics.optics import SkinOptics
-from skinnet.physics.prior import SkinPrior
+from skinnet.physics.prior import SkinPrior, _read
 from skinnet.physics.reflectance import SkinReflectance
 from skinnet.physics.sources import load_spectrum_to_srgb
 from skinnet.physics.specular import R_SURFACE
@@ -93,7 +93,17 @@ def test_a_skin_that_is_not_the_priors_is_refused() -> None:
         inverse = SkinLookup(SkinReflectance(optics)).inverse(MATRIX, nodes=(4, 4))
         with pytest.raises(InputError, match=r"preset `measured`; this skin differs in .*d_"):
             inverse.posterior(rgb)
-    assert inverse.posterior(rgb, prior=SkinPrior()).is_skin
+        with pytest.raises(InputError, match="hand in a prior that"):
+            inverse.posterior(rgb, prior=SkinPrior())
+    assert inverse.posterior(rgb, prior=SkinPrior(_read())).is_skin
+
+
+def test_black_is_no_skin() -> None:
+    assert not SMALL.posterior(torch.tensor([[0.0, 0.0, 0.0], [-0.01, -0.01, -0.01]])).is_skin.any()
+
+
+def test_a_skin_in_single_precision_is_the_priors() -> None:
+    rgb = torch.tensor([0.45, 0.29, 0.22])
     single = SkinLookup(SkinReflectance("measured")).inverse(MATRIX.float(), nodes=(4, 4))
     assert single.posterior(rgb).is_skin
 

@@ -6,6 +6,7 @@ import torch
 from hypothesis import given
 from hypothesis import strategies as st
 
+from skinnet.errors import InputError
 from skinnet.physics.nuisance import Nuisance
 from skinnet.physics.reflectance import SkinReflectance
 from tests import oracle
@@ -116,3 +117,13 @@ def test_nuisance_broadcasts_with_fractions(shape: tuple[int, ...]) -> None:
     nuisance = Nuisance.zeros(shape, like=f_mel)._replace(thickness=f_mel.new_tensor(0.1))
     expected = torch.broadcast_shapes(f_mel.shape, shape)
     assert skin()(f_mel, 0.04, nuisance).shape == (*expected, 33)
+
+
+@pytest.mark.parametrize(
+    ("name", "value"),
+    [("oxygenation", 75.0), ("thickness", float("nan")), ("scattering", 1e3), ("baseline", -1e4)],
+)
+def test_deviations_beyond_any_skin_are_refused(name: str, value: float) -> None:
+    nuisance = Nuisance.zeros()._replace(**{name: torch.tensor(value)})
+    with pytest.raises(InputError, match=rf"{name} is a deviation from the preset in"):
+        SkinReflectance()(0.05, 0.04, nuisance)

@@ -7,6 +7,7 @@ import torch
 from scipy.stats import multivariate_normal
 
 from benchmarks.skin_spectra import fill_bands, halve_issa, load_issa
+from skinnet.errors import InputError
 from skinnet.physics import (
     Nuisance,
     SkinPrior,
@@ -192,3 +193,9 @@ def compute_energy_distance(a: torch.Tensor, b: torch.Tensor) -> float:
     """Székely & Rizzo 2013."""
     between, within = torch.cdist(a, b).mean(), torch.cdist(a, a).mean() + torch.cdist(b, b).mean()
     return (2 * between - within).item()
+
+
+@pytest.mark.parametrize("f_blood", [0.0, -0.1, float("nan")])
+def test_skin_without_blood_has_no_typical_thickness(f_blood: float) -> None:
+    with pytest.raises(InputError, match="f_blood is a volume fraction above 0"):
+        SkinPrior.typical_nuisance(torch.tensor(f_blood))

@@ -3,6 +3,7 @@
 import pytest
 import torch
 
+from skinnet.errors import InputError
 from skinnet.physics.specular import R_SURFACE, include_specular
 
 
@@ -26,3 +27,9 @@ def test_gradients_are_right() -> None:
     skin = torch.tensor([0.0, 0.3, 1.0], dtype=torch.float64, requires_grad=True)
     surface = torch.tensor(0.0, dtype=torch.float64, requires_grad=True)
     assert torch.autograd.gradcheck(include_specular, (skin, surface))
+
+
+@pytest.mark.parametrize("r_surface", [5.04, -1.0, float("nan")])
+def test_a_surface_out_of_range_is_refused(r_surface: float) -> None:
+    with pytest.raises(InputError, match=r"r_surface is a reflectance in \[0, 1\]"):
+        include_specular(torch.full((33,), 0.5), r_surface)
