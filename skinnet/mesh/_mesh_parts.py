@@ -38,6 +38,19 @@ class MeshPart(NamedTuple):
     colour: UInt8[np.ndarray, "3"]
 
 
+class MeshContent(NamedTuple):
+    """The parts of a file, and what was assumed when they were read.
+
+    `listed` holds the positions in the file's order (it may be empty: then that of the parts).
+    `names_pictures` tells whether the file's materials name a picture, of whatever kind.
+    """
+
+    parts: list[MeshPart]
+    notes: list[str]
+    names_pictures: bool
+    listed: Float[np.ndarray, "listed 3"]
+
+
 def read_parts(path: Path) -> list[MeshPart]:
     """Read the parts of a file that have triangles, in the file's frame.
 

@@ -20,6 +20,7 @@ class Mesh:
         uv_triangles: Indices into `uv` of each triangle's corners.
         texture: sRGB picture, row 0 at the top.
         name: What error messages call the mesh.
+        notes: Sentences on what was assumed when the mesh's file was read.
 
     Example:
         >>> import numpy as np
@@ -34,3 +35,4 @@ class Mesh:
     uv_triangles: Int[np.ndarray, "triangles 3"] | None = None
     texture: UInt8[np.ndarray, "height width 3"] | None = None
     name: str = "mesh"
+    notes: tuple[str, ...] = ()

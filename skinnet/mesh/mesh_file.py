@@ -1,5 +1,6 @@
 """Mesh files: OBJ, PLY, glTF and STL are read, OBJ and PLY are written."""
 
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -7,7 +8,13 @@ from PIL import Image
 
 from skinnet.errors import InputError
 from skinnet.files import write_together
-from skinnet.mesh._mesh_parts import MeshPart, concatenate, read_obj_positions, read_parts
+from skinnet.mesh._mesh_parts import (
+    MeshContent,
+    MeshPart,
+    concatenate,
+    read_obj_positions,
+    read_parts,
+)
 from skinnet.mesh._seams import merge_coordinates, merge_vertices
 from skinnet.mesh._texture_atlas import pack_atlas
 from skinnet.mesh._texture_file import find_texture_beside, read_texture
@@ -46,14 +53,15 @@ def read_mesh(path: Path, texture: Path | None = None) -> Mesh:
         array([[0, 1, 2]])
     """
     path = Path(path)
-    parts = read_parts(path)
-    listed = read_obj_positions(path) if path.suffix.lower() == ".obj" else np.zeros((0, 3))
-    vertices, triangles = merge_vertices(concatenate([part.geometry for part in parts]), listed)
-    atlas = pack_atlas(_choose_textures(parts, texture, find_texture_beside(path)))
+    content = _read_content(path)
+    whole = concatenate([part.geometry for part in content.parts])
+    vertices, triangles = merge_vertices(whole, content.listed)
+    atlas = pack_atlas(_choose_textures(content.parts, texture, find_texture_beside(path)))
+    mesh = Mesh(vertices, triangles, name=str(path), notes=tuple(content.notes))
     if atlas is None:
-        return Mesh(vertices, triangles, name=str(path))
+        return mesh
     uv, uv_triangles = merge_coordinates(triangles, atlas.uv, atlas.triangles)
-    return Mesh(vertices, triangles, uv, uv_triangles, atlas.texture, str(path))
+    return replace(mesh, uv=uv, uv_triangles=uv_triangles, texture=atlas.texture)
 
 
 def write_mesh(path: Path, mesh: Mesh) -> None:
@@ -94,6 +102,13 @@ def write_mesh(path: Path, mesh: Mesh) -> None:
             if path.suffix.lower() == ".obj":
                 material = f"newmtl skin\nKd 1 1 1\nmap_Kd {picture.name}\n"
                 beside(path.with_suffix(".mtl")).write_text(material, encoding="utf-8")
+
+
+def _read_content(path: Path) -> MeshContent:
+    parts = read_parts(path)
+    listed = read_obj_positions(path) if path.suffix.lower() == ".obj" else np.zeros((0, 3))
+    named = any(part.texture is not None for part in parts)
+    return MeshContent(parts, [], named, listed)
 
 
 def _choose_textures(

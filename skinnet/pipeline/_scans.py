@@ -71,7 +71,7 @@ def load_scan(path: Path, model: ShapeModel, options: ScanOptions, textured: boo
     )
     points = None if marks is None else read_landmarks(marks, mesh)
     checked = repair_mesh(mesh, textured)
-    notes = list(checked.notes)
+    notes = [*mesh.notes, *checked.notes]
     if points is None:
         notes.append(f"{path} has no landmarks; its face is detected from the front.")
     else:
