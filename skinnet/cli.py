@@ -164,14 +164,16 @@ def _predict(options: argparse.Namespace) -> int:
 def _predict_one(
     decomposer: "Decomposer", source: str, folder: Path, stem: str, options: argparse.Namespace
 ) -> None:
-    from skinnet.images.photograph import read_photo
+    from skinnet.images.photograph import read_picture
     from skinnet.inference.results import write_results
 
     name = _name(source)
-    photo = read_photo(_open(source), name)
-    decomposition = decomposer(photo, options.whole_image, name, options.detail)
+    picture = read_picture(_open(source), name)
+    decomposition = decomposer(picture, options.whole_image, name, options.detail)
     summary = {"file": name} | decomposition.summary()
-    count = write_results(folder, stem, photo, decomposition, summary)
+    count = write_results(folder, stem, picture.srgb, decomposition, summary)
+    for note in decomposition.notes:
+        print(f"skinnet: {note}", file=sys.stderr)
     if options.json:
         _print(json.dumps(summary, allow_nan=False))
         return

@@ -1,4 +1,4 @@
-"""Photographs as uint8 sRGB arrays: read, take over from memory, write."""
+"""Pictures from files and from memory, and PNG files."""
 
 import warnings
 from collections.abc import Mapping
@@ -13,7 +13,54 @@ from PIL import Image, PngImagePlugin
 from skinnet.errors import InputError
 from skinnet.files import write_atomically
 from skinnet.images import _decode
+from skinnet.images.picture import Picture
 from skinnet.images.srgb import to_uint8
+
+
+def read_picture(
+    source: str | Path | BinaryIO | BufferedIOBase | Image.Image | NDArray[Any],
+    name: str | None = None,
+) -> Picture:
+    """Read a picture with everything that its file states.
+
+    One function decides the colour space of every picture: by its profile, the chunks of PNG, the
+    boxes of HEIF, AVIF and JPEG 2000, the tags of TIFF and EXIF, in the order of the formats'
+    specifications. Without a statement it is sRGB. EXIF orientation is applied, also to a Pillow
+    image: remove the tag (as `PIL.ImageOps.exif_transpose` does) if you have turned it yourself. Of
+    several frames the first is read.
+
+    Args:
+        source: A path, an open binary file, a Pillow image, or an sRGB array [H, W], [H, W, 1],
+            [H, W, 3] or [H, W, 4] of uint8 or of floats in [0, 1].
+        name: Name of the picture in messages; the path by default.
+
+    Returns:
+        The picture.
+
+    Raises:
+        InputError: The source is missing, empty, damaged or not a picture, has more than 100
+            megapixels, pixels whose white is not known (floats in a file, PQ, HLG), or is of
+            another type, shape or range.
+
+    Example:
+        >>> from io import BytesIO
+        >>> from skinnet.images import read_picture
+        >>> picture = read_picture(BytesIO(b"P6 2 1 255 " + bytes([255, 0, 0, 0, 0, 255])))
+        >>> picture.format, picture.colour_space.name, picture.colour_space.known_from
+        ('PPM', 'sRGB', 'assumed')
+    """
+    if isinstance(source, np.ndarray):
+        return _from_array(source, name or "The array")
+    if isinstance(source, Image.Image):
+        with warnings.catch_warnings():
+            warnings.simplefilter("ignore")
+            return _decode.decode_image(source, name or "The image")
+    if isinstance(source, str | Path):
+        return _from_path(Path(source), name or str(source))
+    if not hasattr(source, "read"):
+        kind = type(source).__name__
+        raise InputError(f"An image is a path, a Pillow image or an array; got {kind}.")
+    return _decode.decode_file(BytesIO(source.read()), name or "The data")
 
 
 def read_photo(
@@ -21,8 +68,7 @@ def read_photo(
 ) -> NDArray[np.uint8]:
     """Read a photograph as upright sRGB without alpha.
 
-    EXIF orientation is applied, embedded colour profiles are converted to sRGB, transparent pixels
-    are blended with white, and of several frames the first is read.
+    It is `read_picture`, whose transparent pixels are blended with white.
 
     Args:
         source: A path, or an open binary file.
@@ -32,8 +78,7 @@ def read_photo(
         uint8 sRGB [H, W, 3].
 
     Raises:
-        InputError: The file is missing, empty, damaged or not a picture, has more than 100
-            megapixels, or has pixels whose white is not known (floats, for example).
+        InputError: As `read_picture`.
 
     Example:
         >>> from io import BytesIO
@@ -41,20 +86,7 @@ def read_photo(
         >>> read_photo(BytesIO(b"P6 2 1 255 " + bytes([255, 0, 0, 0, 0, 255]))).tolist()
         [[[255, 0, 0], [0, 0, 255]]]
     """
-    if not isinstance(source, str | Path):
-        return _decode.decode_file(BytesIO(source.read()), name or "The data")
-    path = Path(source)
-    if path.is_dir():
-        raise InputError(f"{path} is a folder; give a photograph in it.")
-    try:
-        with path.open("rb") as file:
-            return _decode.decode_file(file, name or str(path))
-    except FileNotFoundError:
-        raise InputError(f"There is no file {path}; check the path.") from None
-    except (OSError, ValueError) as error:
-        if isinstance(error, InputError):
-            raise
-        raise InputError(f"{path} cannot be read: {error}.") from error
+    return read_picture(source, name).srgb
 
 
 def as_photo(image: str | Path | Image.Image | NDArray[Any]) -> NDArray[np.uint8]:
@@ -62,7 +94,8 @@ def as_photo(image: str | Path | Image.Image | NDArray[Any]) -> NDArray[np.uint8
 
     Args:
         image: A path, a Pillow image, or an sRGB array [H, W], [H, W, 1], [H, W, 3] or [H, W, 4] of
-            uint8 or of floats in [0, 1]. Transparent pixels are blended with white.
+            uint8 or of floats in [0, 1]. Transparent pixels are blended with white. The orientation
+            that a Pillow image carries is applied; remove the tag if you have turned it yourself.
 
     Returns:
         uint8 sRGB [H, W, 3].
@@ -76,15 +109,7 @@ def as_photo(image: str | Path | Image.Image | NDArray[Any]) -> NDArray[np.uint8
         >>> as_photo(np.array([[0.0, 1.0]])).tolist()
         [[[0, 0, 0], [255, 255, 255]]]
     """
-    if isinstance(image, np.ndarray):
-        return _from_array(image)
-    if isinstance(image, Image.Image):
-        with warnings.catch_warnings():
-            warnings.simplefilter("ignore")
-            return _decode.decode_image(image, "The image")
-    if isinstance(image, str | Path):
-        return read_photo(image)
-    raise InputError(f"An image is a path, a Pillow image or an array; got {type(image).__name__}.")
+    return read_picture(image).srgb
 
 
 def write_png(path: Path, array: NDArray[Any], text: Mapping[str, str] | None = None) -> None:
@@ -119,16 +144,32 @@ def write_png(path: Path, array: NDArray[Any], text: Mapping[str, str] | None = 
         Image.fromarray(array).save(part, "PNG", pnginfo=info, compress_level=1)
 
 
-def _from_array(array: NDArray[Any]) -> NDArray[np.uint8]:
+def _from_path(path: Path, name: str) -> Picture:
+    if path.is_dir():
+        raise InputError(f"{path} is a folder; give a photograph in it.")
+    try:
+        with path.open("rb") as file:
+            return _decode.decode_file(file, name)
+    except FileNotFoundError:
+        raise InputError(f"There is no file {path}; check the path.") from None
+    except (OSError, ValueError) as error:
+        if isinstance(error, InputError):
+            raise
+        raise InputError(f"{path} cannot be read: {error}.") from error
+
+
+def _from_array(array: NDArray[Any], name: str) -> Picture:
     grey = array.ndim == 2 or (array.ndim == 3 and array.shape[2] == 1)
     if (not grey and not (array.ndim == 3 and array.shape[2] in (3, 4))) or array.size == 0:
         raise InputError(
             f"A photograph is [H, W], [H, W, 3] or [H, W, 4]; got shape {list(array.shape)}."
         )
-    _decode.check_size(array.shape[1], array.shape[0], "The array")
+    _decode.check_size(array.shape[1], array.shape[0], name)
     value = array if array.dtype == np.uint8 else to_uint8(_check_floats(array))
-    value = np.repeat(value.reshape(*array.shape[:2], 1), 3, 2) if grey else value
-    return np.array(_decode.to_srgb(Image.fromarray(value), "The array"))
+    colour = value.reshape(value.shape[:2]) if grey else value[..., :3]
+    return Picture(
+        name, np.array(colour), value[..., 3].copy() if array.shape[2:] == (4,) else None
+    )
 
 
 def _check_floats(array: NDArray[Any]) -> NDArray[np.float32]:

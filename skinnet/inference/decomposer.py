@@ -13,7 +13,8 @@ from PIL import Image
 from skinnet.errors import InputError, NoFaceError
 from skinnet.images.box import Box
 from skinnet.images.faces import find_face, frame_head
-from skinnet.images.photograph import as_photo
+from skinnet.images.photograph import read_picture
+from skinnet.images.picture import Picture
 from skinnet.images.resizing import resize
 from skinnet.images.srgb import srgb_to_linear
 from skinnet.inference._editing import ColourChange, apply_change, compute_change, fade_edges
@@ -35,7 +36,7 @@ MAX_FACTOR = 10.0
 _MIN_SIDE = 16
 """Smallest side, in pixels, of the encoder's input."""
 
-ImageLike = str | Path | Image.Image | NDArray[Any]
+ImageLike = str | Path | Image.Image | NDArray[Any] | Picture
 _Arrays = Mapping[str, NDArray[np.float32]]
 
 
@@ -92,7 +93,8 @@ class Decomposer:
         """Decompose a photograph.
 
         Args:
-            image: A path, a Pillow image or an array, as `skinnet.images.as_photo` takes it.
+            image: A path, a Pillow image, an array or a `Picture`; `skinnet.images.read_picture`
+                says what they may be.
             whole_image: Whether to decompose the whole image, and not the square around the head of
                 the largest face.
             name: Name of the image in error messages; the path by default.
@@ -106,7 +108,8 @@ class Decomposer:
             InputError: The image or a model file cannot be used.
             NoFaceError: No face was found.
         """
-        photo = as_photo(image)
+        picture = _as_picture(image)
+        photo = picture.srgb
         box = _choose_box(photo, whole_image, name or _name_image(image))
         encoder_outputs = self._encode(photo[box.slices])
         layers = self._make_layers(photo[box.slices], encoder_outputs, detail)
@@ -115,6 +118,8 @@ class Decomposer:
             light=self._name_light(encoder_outputs),
             camera=_name_camera(encoder_outputs),
             box=box,
+            colour_space=picture.colour_space,
+            notes=picture.notes,
             output_info=self.encoder.output_info,
             model={
                 "version": self.encoder.version,
@@ -137,7 +142,8 @@ class Decomposer:
         not skin keep their exact values.
 
         Args:
-            image: A path, a Pillow image or an array, as `skinnet.images.as_photo` takes it.
+            image: A path, a Pillow image, an array or a `Picture`; `skinnet.images.read_picture`
+                says what they may be.
             melanin: Factor of melanin in [0, 10].
             hemoglobin: Factor of hemoglobin in [0, 10].
             whole_image: Whether to edit the whole image, and not the square around the head of the
@@ -164,7 +170,7 @@ class Decomposer:
                     f"{pigment} is multiplied by a number in [0, {MAX_FACTOR:g}]; got {factor:g}. "
                     "1 leaves it as it is, 2 doubles it."
                 )
-        photo = as_photo(image)
+        photo = _as_picture(image).srgb
         box = _choose_box(photo, whole_image, name or _name_image(image))
         crop = photo[box.slices]
         encoder_outputs = self._encode(crop)
@@ -236,7 +242,13 @@ def _choose_box(photo: NDArray[np.uint8], whole_image: bool, name: str) -> Box:
     return frame_head(face, width, height)
 
 
+def _as_picture(image: ImageLike) -> Picture:
+    return image if isinstance(image, Picture) else read_picture(image)
+
+
 def _name_image(image: ImageLike) -> str:
+    if isinstance(image, Picture):
+        return image.name
     return str(image) if isinstance(image, str | Path) else "the image"
 
 

@@ -9,6 +9,7 @@ from numpy.typing import NDArray
 
 from skinnet._version import __version__
 from skinnet.images.box import Box
+from skinnet.images.colour_space import ColourSpace
 from skinnet.inference.onnx_model import OutputInfo
 
 SKIN_THRESHOLD = 0.5
@@ -37,6 +38,8 @@ class Decomposition:
             blended with the decoder's picture off skin; the photograph itself outside `box`.
         box: The part of the photograph that was decomposed.
         output_info: Unit, range and description of each map.
+        colour_space: The colour space in which the photograph was, and how that is known.
+        notes: Sentences that the user should read, such as what was assumed of the photograph.
         model: `version` and `trained_on` of the encoder, and `optics`, the preset of the skin's
             constants to which its fractions belong: `SkinDecoder(model["optics"])` renders them.
 
@@ -59,6 +62,8 @@ class Decomposition:
     box: Box
     output_info: Mapping[str, OutputInfo]
     model: dict[str, str]
+    colour_space: ColourSpace = ColourSpace("sRGB", "assumed")
+    notes: tuple[str, ...] = ()
 
     def __repr__(self) -> str:
         height, width = self.mask.shape
@@ -96,15 +101,20 @@ class Decomposition:
         """Summarise the maps over skin, with light and camera, as numbers for JSON.
 
         Returns:
-            `photo` (size), `box`, `skin_share` (part of the box that is skin), `maps` (`unit`,
-            `mean`, `std`, `p5` and `p95` of each; None where there is no skin), `light`, `camera`,
-            `version` and `model`.
+            `photo` (size), `colour_space` (`name`, `known_from`), `notes`, `box`, `skin_share`
+            (part of the box that is skin), `maps` (`unit`, `mean`, `std`, `p5` and `p95` of each;
+            None where there is no skin), `light`, `camera`, `version` and `model`.
         """
         skin = self.mask > SKIN_THRESHOLD
         height, width = skin.shape
         maps = {name: value for name, value in self.maps().items() if name != "mask"}
         return {
             "photo": {"width": width, "height": height},
+            "colour_space": {
+                "name": self.colour_space.name,
+                "known_from": self.colour_space.known_from,
+            },
+            "notes": list(self.notes),
             "box": self.box._asdict(),
             "skin_share": _round(float(np.mean(skin[self.box.slices]))),
             "maps": {

@@ -8,8 +8,7 @@ from jaxtyping import UInt8
 from PIL import Image
 
 from skinnet.errors import InputError
-from skinnet.files import READ_ERRORS
-from skinnet.images._decode import MAX_PIXELS, PHOTO_FORMATS, PHOTO_SUFFIXES, to_srgb
+from skinnet.images._decode import PHOTO_SUFFIXES, decode_file, decode_image
 
 Texture = UInt8[np.ndarray, "_ _ 3"]
 
@@ -17,43 +16,26 @@ Texture = UInt8[np.ndarray, "_ _ 3"]
 def read_texture(path: Path) -> Texture:
     """Read a picture as uint8 sRGB, its rows and columns as stored in the file.
 
-    Texture coordinates refer to these, so an EXIF orientation is not applied. Colour profiles are,
-    and transparency is composited on white.
+    Texture coordinates refer to these, so an EXIF orientation is not applied. The colour space is
+    decided as for photographs, and transparency is composited on white.
 
     Raises:
         InputError: If the picture is missing, damaged, or larger than `MAX_PIXELS`.
     """
-    Image.init()
     try:
-        with warnings.catch_warnings():
-            warnings.simplefilter("ignore")
-            image = Image.open(
-                path, formats=[known for known in PHOTO_FORMATS if known in Image.OPEN]
-            )
+        with path.open("rb") as file:
+            return decode_file(file, str(path), upright=False).srgb
     except FileNotFoundError:
         raise InputError(f"There is no texture {path}; check the path.") from None
-    except (Image.DecompressionBombError, *READ_ERRORS) as error:
-        raise InputError(f"{path} is not a picture that can be read as a texture.") from error
-    with image:
-        return decode_texture(image, str(path))
+    except OSError as error:
+        raise InputError(f"{path} cannot be read as a texture: {error}.") from error
 
 
 def decode_texture(image: Image.Image, name: str) -> Texture:
     """Decode an open image as uint8 sRGB; errors call it `name`."""
-    width, height = image.size
-    if width * height > MAX_PIXELS:
-        raise InputError(
-            f"{name} is {width} x {height} pixels, more than {MAX_PIXELS:,}; scale it down first."
-        )
-    try:
-        with warnings.catch_warnings():
-            warnings.simplefilter("ignore")
-            image.load()
-            return np.array(to_srgb(image, name))
-    except InputError:
-        raise
-    except (Image.DecompressionBombError, *READ_ERRORS) as error:
-        raise InputError(f"{name} is damaged or cut short ({error}); copy it again.") from error
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore")
+        return decode_image(image, name, upright=False).srgb
 
 
 def find_texture_beside(path: Path) -> Path | None:

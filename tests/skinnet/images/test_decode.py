@@ -14,7 +14,7 @@ from picture_files import (
 from PIL import Image
 
 from skinnet.errors import InputError
-from skinnet.images import _decode, as_photo, read_photo
+from skinnet.images import _decode, as_photo, read_photo, read_picture
 
 
 @pytest.mark.parametrize("orientation", range(1, 9))
@@ -56,13 +56,15 @@ def test_the_srgb_profile_changes_nothing(tmp_path: Path) -> None:
 
 
 @pytest.mark.parametrize(("mode", "profile"), [("RGB", b"not a profile"), ("CMYK", None)])
-def test_a_profile_that_cannot_be_used_is_refused(
+def test_a_profile_that_does_not_fit_is_not_used_and_said(
     tmp_path: Path, mode: str, profile: bytes | None
 ) -> None:
     image = Image.fromarray(make_photo()).convert(mode)
     path = save_image(image, tmp_path / "a.tif", icc_profile=profile or make_srgb_profile())
-    with pytest.raises(InputError, match=r"a\.tif has a colour profile .* save it again as sRGB"):
-        read_photo(path)
+    picture = read_picture(path)
+    np.testing.assert_array_equal(picture.srgb, np.asarray(image.convert("RGB")))
+    assert picture.colour_space.known_from == "assumed"
+    assert f"a.tif has a colour profile that does not fit its {mode} pixels" in picture.notes[0]
 
 
 @pytest.mark.parametrize("mode", ["RGBA", "LA", "P"])

@@ -7,7 +7,7 @@ import pytest
 from PIL import Image
 
 from skinnet.errors import InputError
-from skinnet.mesh import _texture_file
+from skinnet.images import _decode
 from skinnet.mesh._texture_file import find_texture_beside, read_texture
 
 
@@ -46,8 +46,8 @@ def test_faults_are_named(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> No
     with pytest.raises(InputError, match=r"cut\.png is (damaged|not a picture)"):
         read_texture(path)
     path.write_bytes(whole)
-    monkeypatch.setattr(_texture_file, "MAX_PIXELS", 100)
-    with pytest.raises(InputError, match="64 x 64 pixels, more than 100"):
+    monkeypatch.setattr(_decode, "MAX_PIXELS", 100)
+    with pytest.raises(InputError, match="64 x 64, more pixels than the limit of 100"):
         read_texture(path)
 
 

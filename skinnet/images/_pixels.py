@@ -1,0 +1,140 @@
+"""Pixels of an open picture at their own depth: 8 or 16 bits, grey, RGB or CMYK, and alpha."""
+
+from io import BytesIO
+from typing import Any, NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+from PIL import Image
+
+from skinnet.errors import InputError
+
+_EIGHT_BIT = frozenset("1 L LA La P PA RGB RGBA RGBa RGBX CMYK YCbCr HSV".split())
+_STRAIGHT = {"La": "LA", "RGBa": "RGBA"}
+_BITS, _COMPRESSION, _PHOTOMETRIC, _PLANES, _SAMPLE_FORMAT = 258, 259, 262, 284, 339
+_WHITE_IS_ZERO, _BLACK_IS_ZERO, _RGB, _CMYK = 0, 1, 2, 5
+_JPEG_COMPRESSIONS = (6, 7)
+_ASSOCIATED_ALPHA = 1
+
+
+class Pixels(NamedTuple):
+    """Stored pixels, uint8 or uint16: [H, W] grey, [H, W, 3] RGB or [H, W, 4] CMYK; and alpha."""
+
+    colour: NDArray[Any]
+    alpha: NDArray[Any] | None
+
+    @property
+    def channels(self) -> str:
+        """RGB, GRAY or CMYK."""
+        return {(): "GRAY", (3,): "RGB", (4,): "CMYK"}[self.colour.shape[2:]]
+
+
+def read_pixels(image: Image.Image, data: bytes, name: str) -> Pixels:
+    """Read the pixels of an open picture as they are stored, not turned upright.
+
+    Pillow reads 16 bits of colour as 8, and some TIFF files wrongly; these go to other decoders.
+
+    Raises:
+        InputError: The pixels have no known white.
+    """
+    if data and image.format == "PNG" and _is_deep_png(image, data):
+        return _read_deep_png(data)
+    if data and image.format == "TIFF" and _needs_tifffile(image):
+        return _read_tiff(data, image, name)
+    return _from_pillow(image, name)
+
+
+def _is_deep_png(image: Image.Image, data: bytes) -> bool:
+    # A transparent colour (tRNS) is left to Pillow.
+    return data[24] == 16 and data[25] in (2, 4, 6) and "transparency" not in image.info
+
+
+def _read_deep_png(data: bytes) -> Pixels:
+    from imagecodecs import png_decode
+
+    values = np.asarray(png_decode(data))
+    if values.dtype != np.uint16:
+        raise ValueError(f"16-bit PNG decoded to {values.dtype}")
+    return _split_alpha(values, values.shape[2] in (2, 4))
+
+
+def _split_alpha(values: NDArray[Any], has_alpha: bool) -> Pixels:
+    if values.ndim == 2:
+        return Pixels(values, None)
+    colour, alpha = (values[..., :-1], values[..., -1]) if has_alpha else (values, None)
+    return Pixels(colour[..., 0] if colour.shape[2] == 1 else colour, alpha)
+
+
+def _needs_tifffile(image: Image.Image) -> bool:
+    tags: Any = image.tag_v2  # type: ignore[attr-defined]
+    bits = tags.get(_BITS, (1,))
+    if tags.get(_COMPRESSION, 1) in _JPEG_COMPRESSIONS:
+        return False
+    deep = max(bits) > 8 and set(tags.get(_SAMPLE_FORMAT, (1,))) == {1} and max(bits) <= 16
+    planes = tags.get(_PLANES, 1) == 2 and max(bits) == 8
+    return (deep or planes) and tags.get(_PHOTOMETRIC) in (
+        *(_WHITE_IS_ZERO, _BLACK_IS_ZERO, _RGB, _CMYK),
+    )
+
+
+def _read_tiff(data: bytes, image: Image.Image, name: str) -> Pixels:
+    from tifffile import TiffFile
+
+    with TiffFile(BytesIO(data)) as file:
+        page: Any = file.pages[0]
+        values = np.asarray(page.asarray())
+        bits, photometric = int(page.bitspersample), int(page.photometric)
+        planar, extra = int(page.planarconfig) == 2, tuple(int(one) for one in page.extrasamples)
+        samples = int(page.samplesperpixel)
+    if planar and samples > 1:
+        values = np.moveaxis(values, 0, -1)
+    if values.ndim > 3 or values.dtype not in (np.uint8, np.uint16):
+        raise InputError(
+            f"{name} is a TIFF file of shape {list(values.shape)} and {values.dtype}, which is not "
+            "a photograph; save it as 8-bit or 16-bit RGB."
+        )
+    if values.dtype == np.uint16 and bits < 16:
+        values = (values.astype(np.uint32) * 65535 // (2**bits - 1)).astype(np.uint16)
+    if photometric == _WHITE_IS_ZERO:
+        values = np.iinfo(values.dtype).max - values
+    return _drop_extra_samples(values, photometric, extra)
+
+
+def _drop_extra_samples(values: NDArray[Any], photometric: int, extra: tuple[int, ...]) -> Pixels:
+    """Part colours from alpha, and from samples of another meaning."""
+    count = {_RGB: 3, _CMYK: 4}.get(photometric, 1)
+    if values.ndim == 2:
+        return Pixels(values, None)
+    colour, others = values[..., :count], values[..., count:]
+    alpha = next((others[..., i] for i, kind in enumerate(extra) if kind in (1, 2)), None)
+    if alpha is not None and extra[0] == _ASSOCIATED_ALPHA:
+        top = np.iinfo(values.dtype).max
+        ratio = top / np.maximum(alpha, 1)[..., None]
+        colour = np.minimum(np.rint(colour * ratio), top).astype(values.dtype)
+    return Pixels(colour[..., 0] if count == 1 else colour, alpha)
+
+
+def _from_pillow(image: Image.Image, name: str) -> Pixels:
+    image.load()
+    if image.mode.startswith("I;16") or (image.mode == "I" and image.format in ("PNG", "PPM")):
+        grey = np.asarray(image).astype(np.uint32).clip(0, 65535)
+        return Pixels(grey.astype(np.uint16), None)
+    if image.mode not in _EIGHT_BIT:
+        raise InputError(
+            f"{name} has pixels of Pillow's mode {image.mode}, whose white is not known; "
+            "save it as 8-bit or 16-bit sRGB."
+        )
+    plain = image.convert(_STRAIGHT[image.mode]) if image.mode in _STRAIGHT else image
+    alpha = None
+    if plain.has_transparency_data:
+        alpha = np.array(plain.convert("RGBA").getchannel("A"))
+    return Pixels(np.array(_drop_alpha(plain)), alpha)
+
+
+def _drop_alpha(plain: Image.Image) -> Image.Image:
+    if plain.mode == "CMYK":
+        # Pillow inverts every CMYK JPEG, as Adobe's are; others are not written inverted.
+        adobe = plain.format != "JPEG" or "adobe" in plain.info
+        return plain if adobe else plain.point(lambda value: 255 - value)
+    grey = plain.mode in ("1", "L", "LA") and not isinstance(plain.info.get("transparency"), tuple)
+    return plain.convert("L") if grey else plain.convert("RGB")

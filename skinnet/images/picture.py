@@ -1,0 +1,120 @@
+"""Pictures as their files hold them: pixels, colour space, transparency and metadata."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field, replace
+from functools import cached_property
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+from PIL import Image
+
+from skinnet.images._icc import (
+    convert_pixels,
+    make_linear_profile,
+    make_srgb_profile,
+    read_signature,
+)
+from skinnet.images.colour_space import ColourSpace
+from skinnet.images.srgb import linear_to_srgb, srgb_to_linear
+
+_SRGB = ColourSpace("sRGB", "assumed")
+
+
+@dataclass(frozen=True, eq=False)
+class Picture:
+    """A picture as its file holds it, turned upright.
+
+    Attributes:
+        name: What messages call it.
+        pixels: uint8 or uint16 in `colour_space`: grey [H, W], RGB [H, W, 3] or CMYK [H, W, 4].
+        alpha: Opacity of the type of `pixels`, [H, W], not multiplied in; None if all is opaque.
+        colour_space: The colour space of the pixels, and how it is known.
+        format: Pillow's name of the file's format; "" for an array.
+        metadata: What else the file holds, as Pillow names it: `exif`, `xmp`, `dpi` and others.
+        notes: Sentences that the user should read, such as what was assumed of the colours.
+
+    Example:
+        >>> from skimage.data import astronaut
+        >>> from skinnet.images import read_picture
+        >>> picture = read_picture(astronaut())
+        >>> picture.pixels.shape, picture.colour_space.name, picture.alpha is None
+        ((512, 512, 3), 'sRGB', True)
+    """
+
+    name: str
+    pixels: NDArray[Any]
+    alpha: NDArray[Any] | None = None
+    colour_space: ColourSpace = _SRGB
+    format: str = ""
+    metadata: Mapping[str, Any] = field(default_factory=dict)
+    notes: tuple[str, ...] = ()
+
+    @cached_property
+    def srgb(self) -> NDArray[np.uint8]:
+        """uint8 sRGB [H, W, 3], transparent pixels blended with white."""
+        rgb = self._to_srgb()
+        if self.alpha is None:
+            return rgb
+        image = Image.fromarray(rgb)
+        white = Image.new("RGB", image.size, (255, 255, 255))
+        white.paste(image, mask=Image.fromarray(_to_eight_bits(self.alpha)))
+        return np.array(white)
+
+    def linear(self) -> NDArray[np.float32]:
+        """Return linear sRGB at the depth of the pixels.
+
+        Returns:
+            float32 [H, W, 3], not blended with white. Colours outside sRGB are outside [0, 1].
+        """
+        pixels, profile = self._expand()
+        if profile is None:
+            deep = pixels.dtype == np.uint16
+            return srgb_to_linear(pixels.astype(np.float32) / 65535 if deep else pixels)
+        converted = convert_pixels(pixels, profile, make_linear_profile(), np.float32)
+        return converted.astype(np.float32, copy=False)
+
+    def with_linear(self, linear: NDArray[Any], changed: NDArray[np.bool_]) -> "Picture":
+        """Return the picture with some pixels replaced; the others keep their stored values.
+
+        Args:
+            linear: Linear sRGB [H, W, 3]; what the colour space cannot hold is clipped.
+            changed: Which pixels to replace, [H, W].
+
+        Returns:
+            A picture with the same colour space and depth. Grey pixels become RGB.
+        """
+        pixels, profile = self._expand()
+        dtype, top = pixels.dtype, np.iinfo(pixels.dtype).max
+        wanted = np.asarray(linear, np.float32)[changed][None]
+        if profile is None:
+            values = np.rint(linear_to_srgb(wanted) * top).astype(dtype)
+        else:
+            values = convert_pixels(wanted, make_linear_profile(), profile, dtype)
+        edited = pixels.copy()
+        edited[changed] = values.reshape(-1, pixels.shape[2])
+        space = self.colour_space if profile else ColourSpace("sRGB", self.colour_space.known_from)
+        return replace(self, pixels=edited, colour_space=space)
+
+    def _to_srgb(self) -> NDArray[np.uint8]:
+        pixels, profile = self._expand()
+        if profile is not None:
+            return convert_pixels(pixels, profile, make_srgb_profile(), np.uint8)
+        return _to_eight_bits(pixels)
+
+    def _expand(self) -> tuple[NDArray[Any], bytes | None]:
+        """RGB or CMYK pixels, and their profile; grey is converted to sRGB."""
+        pixels, profile = self.pixels, self.colour_space.profile
+        if pixels.ndim == 2 and profile is not None and read_signature(profile, 16) == "GRAY":
+            return convert_pixels(pixels, profile, make_srgb_profile(), pixels.dtype), None
+        if pixels.ndim == 2:
+            pixels = np.repeat(pixels[..., None], 3, 2)
+        if pixels.shape[2] == 4 and profile is None:
+            return np.array(Image.fromarray(_to_eight_bits(pixels), "CMYK").convert("RGB")), None
+        return pixels, profile
+
+
+def _to_eight_bits(values: NDArray[Any]) -> NDArray[np.uint8]:
+    if values.dtype == np.uint8:
+        return values
+    return ((values.astype(np.uint32) + 128) // 257).astype(np.uint8)
