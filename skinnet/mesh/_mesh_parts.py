@@ -57,6 +57,7 @@ def read_parts(path: Path) -> list[MeshPart]:
     Raises:
         InputError: For a file that is missing, of another kind, damaged, or without triangles.
     """
+    check_mesh_file(path)
     scene = _load_scene(path)
     try:
         geometries = [_place(scene, node) for node in scene.graph.nodes_geometry]
@@ -64,10 +65,7 @@ def read_parts(path: Path) -> list[MeshPart]:
         raise _unreadable(path, error) from error
     solid = [each for each in geometries if isinstance(each, trimesh.Trimesh) and len(each.faces)]
     if not solid:
-        points = sum(len(each.vertices) for each in geometries)
-        raise InputError(
-            f"{path} has no faces, only {points:,} points; export it as a triangle mesh."
-        )
+        raise refuse_points(path, sum(len(each.vertices) for each in geometries))
     return [_convert_part(path, each) for each in solid]
 
 
@@ -93,18 +91,36 @@ def read_obj_positions(path: Path) -> Float[np.ndarray, "vertices 3"]:
     return positions
 
 
-def _load_scene(path: Path) -> Any:
-    kind = path.suffix.lower()
+def check_mesh_file(path: Path) -> None:
+    """Raise `InputError` if a file is missing, or its suffix is not one of `MESH_SUFFIXES`."""
     if not path.is_file():
         raise InputError(f"There is no mesh {path}; check the path.")
-    if kind not in MESH_SUFFIXES:
+    if path.suffix.lower() not in MESH_SUFFIXES:
         raise InputError(
             f"{path} is not a mesh file that can be read; give one of {', '.join(MESH_SUFFIXES)}."
         )
+
+
+def check_range(path: Path, triangles: Int[np.ndarray, "_ 3"], vertices: int) -> None:
+    """Raise `InputError` if triangles refer to vertices that are not there."""
+    low, high = triangles.min(initial=0), triangles.max(initial=-1)
+    if low < 0 or high >= vertices:
+        raise InputError(
+            f"{path} has a face with vertex {high if low >= 0 else low}, and "
+            f"{vertices:,} vertices; it is damaged or cut short, export it again."
+        )
+
+
+def refuse_points(path: Path, points: int) -> InputError:
+    """Make the error for a file without triangles."""
+    return InputError(f"{path} has no faces, only {points:,} points; export it as a triangle mesh.")
+
+
+def _load_scene(path: Path) -> Any:
     try:
         with warnings.catch_warnings():
             warnings.simplefilter("ignore")
-            return trimesh.load_scene(path, file_type=kind[1:], process=False)
+            return trimesh.load_scene(path, file_type=path.suffix.lower()[1:], process=False)
     except READ_ERRORS as error:
         raise _unreadable(path, error) from error
 
@@ -121,12 +137,7 @@ def _convert_part(path: Path, geometry: Any) -> MeshPart:
     mesh = MeshGeometry(
         np.asarray(geometry.vertices, np.float64), np.asarray(geometry.faces, np.int64)
     )
-    low, high = mesh.triangles.min(), mesh.triangles.max()
-    if low < 0 or high >= len(mesh.vertices):
-        raise InputError(
-            f"{path} has a face with vertex {high if low >= 0 else low}, and "
-            f"{len(mesh.vertices):,} vertices; it is damaged or cut short, export it again."
-        )
+    check_range(path, mesh.triangles, len(mesh.vertices))
     visual = geometry.visual
     if not isinstance(visual, TextureVisuals):
         return MeshPart(mesh, None, None, _rgb(visual.main_color))

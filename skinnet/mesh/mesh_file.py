@@ -8,13 +8,8 @@ from PIL import Image
 
 from skinnet.errors import InputError
 from skinnet.files import write_together
-from skinnet.mesh._mesh_parts import (
-    MeshContent,
-    MeshPart,
-    concatenate,
-    read_obj_positions,
-    read_parts,
-)
+from skinnet.mesh._content import read_content
+from skinnet.mesh._mesh_parts import MeshContent, MeshPart, concatenate
 from skinnet.mesh._seams import merge_coordinates, merge_vertices
 from skinnet.mesh._texture_atlas import pack_atlas
 from skinnet.mesh._texture_file import find_texture_beside, read_texture
@@ -53,10 +48,11 @@ def read_mesh(path: Path, texture: Path | None = None) -> Mesh:
         array([[0, 1, 2]])
     """
     path = Path(path)
-    content = _read_content(path)
+    given = None if texture is None else read_texture(Path(texture))
+    content = read_content(path, given)
     whole = concatenate([part.geometry for part in content.parts])
     vertices, triangles = merge_vertices(whole, content.listed)
-    atlas = pack_atlas(_choose_textures(content.parts, texture, find_texture_beside(path)))
+    atlas = pack_atlas(content.parts if given is not None else _add_texture(path, content))
     mesh = Mesh(vertices, triangles, name=str(path), notes=tuple(content.notes))
     if atlas is None:
         return mesh
@@ -104,22 +100,13 @@ def write_mesh(path: Path, mesh: Mesh) -> None:
                 beside(path.with_suffix(".mtl")).write_text(material, encoding="utf-8")
 
 
-def _read_content(path: Path) -> MeshContent:
-    parts = read_parts(path)
-    listed = read_obj_positions(path) if path.suffix.lower() == ".obj" else np.zeros((0, 3))
-    named = any(part.texture is not None for part in parts)
-    return MeshContent(parts, [], named, listed)
-
-
-def _choose_textures(
-    parts: list[MeshPart], given: Path | None, beside: Path | None
-) -> list[MeshPart]:
-    if given is None:
-        untextured = all(part.texture is None for part in parts)
-        given = beside if untextured and any(part.uv is not None for part in parts) else None
-    if given is None:
+def _add_texture(path: Path, content: MeshContent) -> list[MeshPart]:
+    """Add the picture beside the mesh if the mesh names none."""
+    parts, beside = content.parts, find_texture_beside(path)
+    mapped = any(part.uv is not None for part in parts)
+    if content.names_pictures or beside is None or not mapped:
         return parts
-    texture = read_texture(Path(given))
+    texture = read_texture(beside)
     return [part._replace(texture=texture) for part in parts]
 
 

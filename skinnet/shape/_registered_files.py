@@ -7,7 +7,8 @@ import numpy as np
 from jaxtyping import Float, Int
 
 from skinnet.errors import InputError
-from skinnet.mesh._mesh_parts import MeshPart, concatenate, read_obj_positions, read_parts
+from skinnet.mesh._content import read_content
+from skinnet.mesh._mesh_parts import MeshPart, concatenate, read_obj_positions
 from skinnet.mesh._seams import match_positions, merge_coordinates
 from skinnet.mesh._texture_atlas import pack_atlas
 from skinnet.mesh._topology import weld
@@ -26,7 +27,7 @@ def load_registered_meshes(
     """
     if not files:
         raise InputError(f"{name} has no meshes; give .obj, .ply, .glb or .gltf files.")
-    parts = [read_parts(Path(file)) for file in files]
+    parts = [read_content(Path(file), textured=False).parts for file in files]
     whole = [concatenate([part.geometry for part in each]) for each in parts]
     meshes = [
         Mesh(geometry.vertices, geometry.triangles, name=str(file))

@@ -1,0 +1,63 @@
+"""Files that other files name: percent-encoded, with back-slashes, or in another case."""
+
+import unicodedata
+from pathlib import Path
+from urllib.parse import unquote
+
+
+def find_named_file(folder: Path, name: str) -> Path | None:
+    """Find the file that a mesh or material in `folder` names, or None.
+
+    The name is tried as it is written, then percent-decoded and with back-slashes as separators.
+    Where no file has exactly this name, the only one that differs in case or in Unicode
+    normalisation is taken.
+    """
+    plain = name.split("?")[0].split("#")[0]
+    spellings = [name, unquote(name), plain, unquote(plain)]
+    paths = dict.fromkeys(
+        spelling.removeprefix("file://").strip()
+        for one in spellings
+        for spelling in (one, one.replace("\\", "/"))
+    )
+    for find in (_find_exactly, _find_in_any_case):
+        for path in paths:
+            found = find(folder, path)
+            if found is not None:
+                return found
+    return None
+
+
+def _find_exactly(folder: Path, path: str) -> Path | None:
+    return folder / path if path and _exists(folder / path) else None
+
+
+def _find_in_any_case(folder: Path, path: str) -> Path | None:
+    named = Path(path)
+    found = Path(named.anchor) if named.anchor else folder
+    for part in named.parts[1:] if named.anchor else named.parts:
+        step = found / part
+        if part != ".." and not step.exists():
+            same = [each for each in _list(found) if _fold(each.name) == _fold(part)]
+            if len(same) != 1:
+                return None
+            step = same[0]
+        found = step
+    return found if path and _exists(found) else None
+
+
+def _list(folder: Path) -> list[Path]:
+    try:
+        return list(folder.iterdir())
+    except OSError:
+        return []
+
+
+def _exists(path: Path) -> bool:
+    try:
+        return path.is_file()
+    except (OSError, ValueError):  # a name that is too long, or has a zero byte
+        return False
+
+
+def _fold(name: str) -> str:
+    return unicodedata.normalize("NFC", name).casefold()
