@@ -1,0 +1,185 @@
+"""The mark that every result carries, so that no result is taken for a photograph."""
+
+import json
+import os
+import re
+import struct
+import warnings
+from collections.abc import Iterator
+from io import BufferedIOBase
+from pathlib import Path
+from typing import Any, BinaryIO, NamedTuple
+
+from PIL import Image
+
+from skinnet._version import __version__
+from skinnet.files import READ_ERRORS
+from skinnet.images._decode import PHOTO_FORMATS
+
+PROCESSING_SOFTWARE = 0x000B
+"""EXIF tag that holds the line of an edited photograph's mark."""
+
+EDITED = "edited"
+"""Part of the mark of a photograph that `skinnet edit` wrote."""
+
+_SOFTWARE = 0x0131
+_LINE = re.compile(r"skinnet (\S+) ([\w-]+) ([\w-]+)(?: sha256:([0-9a-f]{64}))?")
+_OLD_MAP = frozenset({"map", "scale", "offset", "unit"})
+_OLD_SUMMARY = frozenset({"file", "maps", "light", "camera"})
+_SCAN_PICTURES = {
+    "shape": ("_shape.npz",),
+    **dict.fromkeys(("panel", "albedo", "render", "face"), ("_maps.npz",)),
+}
+"""Pictures of scans by the end of their names, and the archives that lie beside them."""
+
+_PNG = b"\x89PNG\r\n\x1a\n"
+_TAIL = 256
+_Source = str | Path | BinaryIO | BufferedIOBase
+
+
+class Mark(NamedTuple):
+    """What a result says of itself.
+
+    Attributes:
+        verb: The verb that wrote it, such as `predict`.
+        part: What it shows: `map`, `panel`, `reconstruction`, `edited` or another word.
+        digest: SHA-256 of the file that it was made from, in hexadecimals; empty if not known.
+        version: The version of skinnet that wrote it; empty for versions without marks.
+    """
+
+    verb: str
+    part: str
+    digest: str = ""
+    version: str = __version__
+
+    def __str__(self) -> str:
+        """Return the mark as one line of ASCII, for EXIF's ProcessingSoftware."""
+        line = f"skinnet {self.version} {self.verb} {self.part}"
+        return f"{line} sha256:{self.digest}" if self.digest else line
+
+    def to_text(self) -> dict[str, str]:
+        """Return the mark as tEXt chunks of a PNG file, for `write_png`."""
+        return {"Software": f"skinnet {self.version}", "skinnet": str(self)}
+
+
+def append_mark(path: Path, mark: Mark) -> None:
+    """Append a mark to a file whose format holds neither text nor EXIF (BMP, PPM, GIF)."""
+    with path.open("ab") as file:
+        file.write(f"\n{mark}\n".encode("ascii"))
+
+
+def read_mark(source: _Source) -> Mark | None:
+    """Read the mark of a picture file, also that of a result from before there were marks.
+
+    Args:
+        source: A path, or an open binary file, whose position is kept.
+
+    Returns:
+        The mark; None if the file carries none or cannot be read.
+    """
+    try:
+        if not isinstance(source, str | Path):
+            return _read_and_rewind(source)
+        with open(source, "rb") as file:
+            return _read_open(file) or _read_neighbour(Path(source))
+    except READ_ERRORS:
+        return None
+
+
+def read_summary(path: Path) -> dict[str, Any] | None:
+    """Read a JSON file if it is a summary that `skinnet predict` wrote, of any version."""
+    try:
+        summary = json.loads(path.read_bytes())
+    except READ_ERRORS:
+        return None
+    return summary if isinstance(summary, dict) and summary.keys() >= _OLD_SUMMARY else None
+
+
+def parse_mark(line: object) -> Mark | None:
+    """Parse the line of a mark; None if it is another text."""
+    text = line.decode("latin-1") if isinstance(line, bytes) else line
+    found = _LINE.match(text) if isinstance(text, str) else None
+    if found is None:
+        return None
+    version, verb, part, digest = found.groups()
+    return Mark(verb, part, digest or "", version)
+
+
+def _read_and_rewind(file: BinaryIO | BufferedIOBase) -> Mark | None:
+    place = file.tell()
+    try:
+        return _read_open(file)
+    finally:
+        file.seek(place)
+
+
+def _read_open(file: BinaryIO | BufferedIOBase) -> Mark | None:
+    file.seek(0)
+    if file.read(8) == _PNG:
+        return _read_png(file)
+    return _read_exif(file) or _read_tail(file)
+
+
+def _read_png(file: BinaryIO | BufferedIOBase) -> Mark | None:
+    texts: dict[str, str] = {}
+    for name, body in _list_chunks(file):
+        if name == b"eXIf":
+            exif = Image.Exif()
+            exif.load(b"Exif\0\0" + body)
+            if mark := _find_line(exif):
+                return mark
+        keyword, _, text = body.partition(b"\0")
+        texts[keyword.decode("latin-1")] = text.decode("latin-1")
+    software = texts.get("Software", "")
+    if mark := parse_mark(texts.get("skinnet")) or parse_mark(software):
+        return mark
+    if software.startswith("skinnet "):
+        return Mark("", "result", "", software.split()[1])
+    return Mark("predict", "map", "", "") if texts.keys() >= _OLD_MAP else None
+
+
+def _list_chunks(file: BinaryIO | BufferedIOBase) -> Iterator[tuple[bytes, bytes]]:
+    """The text and EXIF chunks of a PNG file, which may stand on both sides of its pixels."""
+    file.seek(len(_PNG))
+    while len(head := file.read(8)) == 8 and head[4:] != b"IEND":
+        length, name = struct.unpack(">I4s", head)
+        if name in (b"tEXt", b"eXIf"):
+            yield name, file.read(length)
+            length = 0
+        file.seek(length + 4, os.SEEK_CUR)
+
+
+def _read_exif(file: BinaryIO | BufferedIOBase) -> Mark | None:
+    file.seek(0)
+    Image.init()
+    formats = [known for known in PHOTO_FORMATS if known in Image.OPEN]
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore")
+        try:
+            image = Image.open(file, formats=formats)  # type: ignore[arg-type]
+            return _find_line(image.getexif()) or parse_mark(image.info.get("comment"))
+        except (Image.DecompressionBombError, *READ_ERRORS):
+            return None
+
+
+def _find_line(exif: Image.Exif) -> Mark | None:
+    return parse_mark(exif.get(PROCESSING_SOFTWARE)) or parse_mark(exif.get(_SOFTWARE))
+
+
+def _read_tail(file: BinaryIO | BufferedIOBase) -> Mark | None:
+    size = file.seek(0, os.SEEK_END)
+    file.seek(max(0, size - _TAIL))
+    last = file.read().rstrip(b"\n").rpartition(b"\n")[2]
+    return parse_mark(last)
+
+
+def _read_neighbour(path: Path) -> Mark | None:
+    """The mark of a panel or a reconstruction that only the summary beside it makes known."""
+    stem, _, part = path.stem.rpartition("_")
+    if not stem or path.suffix != ".png":
+        return None
+    if part in ("panel", "reconstruction") and read_summary(path.with_name(f"{stem}.json")):
+        return Mark("predict", part, "", "")
+    ends = _SCAN_PICTURES.get(part, ())
+    scan = any(path.with_name(stem + end).is_file() for end in ends)
+    return Mark("maps", part, "", "") if scan else None
