@@ -5,8 +5,6 @@ from collections.abc import Mapping
 from io import BytesIO
 from typing import Any, BinaryIO
 
-import numpy as np
-from numpy.typing import NDArray
 from PIL import Image
 
 from skinnet.errors import InputError
@@ -28,9 +26,9 @@ PHOTO_SUFFIXES = frozenset(
 
 _HEIF_BRANDS = frozenset(b"heic heix heim heis hevc hevx mif1 msf1".split())
 _DAMAGES = (Image.DecompressionBombError, *READ_ERRORS)
-_ORIENTATION = 0x0112
-_INVERSE = {6: 8, 8: 6}
-"""Orientations whose turn is undone by another one."""
+_SUBFILE_TYPE, _PHOTOMETRIC, _DNG_VERSION = 254, 262, 50706
+_RAW_PHOTOMETRICS = (32803, 34892)
+"""A mosaic of colour filters, and linear raw pixels."""
 
 _METADATA = ("exif", "xmp", "dpi", "comment", "photoshop")
 
@@ -72,19 +70,14 @@ def check_size(width: int, height: int, name: str) -> None:
 
 
 def _decode(image: Image.Image, name: str, data: bytes, upright: bool) -> Picture:
-    stated = _find_orientation(image)
-    pixels = read_pixels(image, data, name)
-    # Pillow turns TIFF pixels itself, and then no longer states an orientation.
-    turned = _find_orientation(image) != stated
-    if upright:
-        wanted = 1 if turned else stated
-    else:
-        wanted = _INVERSE.get(stated, stated) if turned else 1
+    if image.format == "TIFF":
+        _refuse_raw(image, data, name)
+    pixels = read_pixels(image, data, name, upright)
     space, notes = decide_colour_space(image, data, pixels.channels, name)
     picture = Picture(
         name,
-        _turn(pixels.colour, wanted),
-        None if pixels.alpha is None else _turn(pixels.alpha, wanted),
+        pixels.colour,
+        pixels.alpha,
         space,
         image.format or "",
         _keep_metadata(image),
@@ -92,6 +85,18 @@ def _decode(image: Image.Image, name: str, data: bytes, upright: bool) -> Pictur
     )
     _ = picture.srgb  # damage that the profile shows is damage of the file
     return picture
+
+
+def _refuse_raw(image: Image.Image, data: bytes, name: str) -> None:
+    """Refuse files of cameras that are TIFF inside; Pillow would show their preview or mosaic."""
+    tags: Any = image.tag_v2  # type: ignore[attr-defined]
+    mosaic = tags.get(_PHOTOMETRIC) in _RAW_PHOTOMETRICS or _DNG_VERSION in tags
+    reduced = int(tags.get(_SUBFILE_TYPE, 0)) & 1
+    if mosaic or reduced or data[8:10] == b"CR":
+        raise InputError(
+            f"{name} is a RAW file, or one that begins with a preview; develop it to JPEG, PNG or "
+            "TIFF in sRGB first."
+        )
 
 
 def _keep_metadata(image: Image.Image) -> Mapping[str, Any]:
@@ -146,19 +151,3 @@ def _too_large(name: str, size: str) -> InputError:
     return InputError(
         f"{name} has {size}more pixels than the limit of {MAX_PIXELS:,}; scale it down first."
     )
-
-
-def _find_orientation(image: Image.Image) -> int:
-    try:
-        return int(image.getexif().get(_ORIENTATION, 1))
-    except READ_ERRORS:  # damaged metadata; viewers show such pixels as they are stored
-        return 1
-
-
-def _turn(values: NDArray[Any], orientation: int) -> NDArray[Any]:
-    """Turn stored pixels upright by the orientation that EXIF states, 1 to 8."""
-    if orientation in (5, 6, 7, 8):
-        values = values.swapaxes(0, 1)
-    rows = slice(None, None, -1 if orientation in (3, 4, 7, 8) else 1)
-    columns = slice(None, None, -1 if orientation in (2, 3, 6, 7) else 1)
-    return np.ascontiguousarray(values[rows, columns])

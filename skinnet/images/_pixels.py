@@ -8,6 +8,7 @@ from numpy.typing import NDArray
 from PIL import Image
 
 from skinnet.errors import InputError
+from skinnet.files import READ_ERRORS
 
 _EIGHT_BIT = frozenset("1 L LA La P PA RGB RGBA RGBa RGBX CMYK YCbCr HSV".split())
 _STRAIGHT = {"La": "LA", "RGBa": "RGBA"}
@@ -15,6 +16,18 @@ _BITS, _COMPRESSION, _PHOTOMETRIC, _PLANES, _SAMPLE_FORMAT = 258, 259, 262, 284,
 _WHITE_IS_ZERO, _BLACK_IS_ZERO, _RGB, _CMYK = 0, 1, 2, 5
 _JPEG_COMPRESSIONS = (6, 7)
 _ASSOCIATED_ALPHA = 1
+_ORIENTATION = 0x0112
+_TRANSPOSES = {
+    2: Image.Transpose.FLIP_LEFT_RIGHT,
+    3: Image.Transpose.ROTATE_180,
+    4: Image.Transpose.FLIP_TOP_BOTTOM,
+    5: Image.Transpose.TRANSPOSE,
+    6: Image.Transpose.ROTATE_270,
+    7: Image.Transpose.TRANSVERSE,
+    8: Image.Transpose.ROTATE_90,
+}
+_INVERSE = {6: 8, 8: 6}
+"""Orientations whose turn is undone by another one."""
 
 
 class Pixels(NamedTuple):
@@ -29,8 +42,8 @@ class Pixels(NamedTuple):
         return {(): "GRAY", (3,): "RGB", (4,): "CMYK"}[self.colour.shape[2:]]
 
 
-def read_pixels(image: Image.Image, data: bytes, name: str) -> Pixels:
-    """Read the pixels of an open picture as they are stored, not turned upright.
+def read_pixels(image: Image.Image, data: bytes, name: str, upright: bool) -> Pixels:
+    """Read the pixels of an open picture; `upright` applies the orientation that EXIF states.
 
     Pillow reads 16 bits of colour as 8, and some TIFF files wrongly; these go to other decoders.
 
@@ -38,10 +51,11 @@ def read_pixels(image: Image.Image, data: bytes, name: str) -> Pixels:
         InputError: The pixels have no known white.
     """
     if data and image.format == "PNG" and _is_deep_png(image, data):
-        return _read_deep_png(data)
+        return _turn_all(_read_deep_png(data), _find_orientation(image) if upright else 1)
     if data and image.format == "TIFF" and _needs_tifffile(image):
-        return _read_tiff(data, image, name)
-    return _from_pillow(image, name)
+        orientation = _find_orientation(image) if upright else 1
+        return _turn_all(_read_tiff(data, name), orientation)
+    return _from_pillow(image, name, upright)
 
 
 def _is_deep_png(image: Image.Image, data: bytes) -> bool:
@@ -77,7 +91,7 @@ def _needs_tifffile(image: Image.Image) -> bool:
     )
 
 
-def _read_tiff(data: bytes, image: Image.Image, name: str) -> Pixels:
+def _read_tiff(data: bytes, name: str) -> Pixels:
     from tifffile import TiffFile
 
     with TiffFile(BytesIO(data)) as file:
@@ -114,8 +128,15 @@ def _drop_extra_samples(values: NDArray[Any], photometric: int, extra: tuple[int
     return Pixels(colour[..., 0] if count == 1 else colour, alpha)
 
 
-def _from_pillow(image: Image.Image, name: str) -> Pixels:
+def _from_pillow(image: Image.Image, name: str, upright: bool) -> Pixels:
+    stated = _find_orientation(image)
     image.load()
+    # Pillow turns TIFF pixels itself, and then no longer states an orientation.
+    turned = _find_orientation(image) != stated
+    if upright:
+        image = _turn_image(image, 1 if turned else stated)
+    else:
+        image = _turn_image(image, _INVERSE.get(stated, stated) if turned else 1)
     if image.mode.startswith("I;16") or (image.mode == "I" and image.format in ("PNG", "PPM")):
         grey = np.asarray(image).astype(np.uint32).clip(0, 65535)
         return Pixels(grey.astype(np.uint16), None)
@@ -128,7 +149,38 @@ def _from_pillow(image: Image.Image, name: str) -> Pixels:
     alpha = None
     if plain.has_transparency_data:
         alpha = np.array(plain.convert("RGBA").getchannel("A"))
-    return Pixels(np.array(_drop_alpha(plain)), alpha)
+    return Pixels(np.asarray(_drop_alpha(plain)), alpha)
+
+
+def _find_orientation(image: Image.Image) -> int:
+    try:
+        return int(image.getexif().get(_ORIENTATION, 1))
+    except READ_ERRORS:  # damaged metadata; viewers show such pixels as they are stored
+        return 1
+
+
+def _turn_image(image: Image.Image, orientation: int) -> Image.Image:
+    """Turn an image; faster than arrays of three channels."""
+    if orientation not in _TRANSPOSES:
+        return image
+    turned = image.transpose(_TRANSPOSES[orientation])
+    turned.format, turned.info = image.format, image.info
+    return turned
+
+
+def _turn_all(pixels: Pixels, orientation: int) -> Pixels:
+    return Pixels(
+        _turn(pixels.colour, orientation),
+        None if pixels.alpha is None else _turn(pixels.alpha, orientation),
+    )
+
+
+def _turn(values: NDArray[Any], orientation: int) -> NDArray[Any]:
+    if orientation in (5, 6, 7, 8):
+        values = values.swapaxes(0, 1)
+    rows = slice(None, None, -1 if orientation in (3, 4, 7, 8) else 1)
+    columns = slice(None, None, -1 if orientation in (2, 3, 6, 7) else 1)
+    return np.ascontiguousarray(values[rows, columns])
 
 
 def _drop_alpha(plain: Image.Image) -> Image.Image:
@@ -137,4 +189,5 @@ def _drop_alpha(plain: Image.Image) -> Image.Image:
         adobe = plain.format != "JPEG" or "adobe" in plain.info
         return plain if adobe else plain.point(lambda value: 255 - value)
     grey = plain.mode in ("1", "L", "LA") and not isinstance(plain.info.get("transparency"), tuple)
-    return plain.convert("L") if grey else plain.convert("RGB")
+    mode = "L" if grey else "RGB"
+    return plain if plain.mode == mode else plain.convert(mode)

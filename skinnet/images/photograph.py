@@ -86,7 +86,7 @@ def read_photo(
         >>> read_photo(BytesIO(b"P6 2 1 255 " + bytes([255, 0, 0, 0, 0, 255]))).tolist()
         [[[255, 0, 0], [0, 0, 255]]]
     """
-    return read_picture(source, name).srgb
+    return _make_writable(read_picture(source, name).srgb)
 
 
 def as_photo(image: str | Path | Image.Image | NDArray[Any]) -> NDArray[np.uint8]:
@@ -109,7 +109,7 @@ def as_photo(image: str | Path | Image.Image | NDArray[Any]) -> NDArray[np.uint8
         >>> as_photo(np.array([[0.0, 1.0]])).tolist()
         [[[0, 0, 0], [255, 255, 255]]]
     """
-    return read_picture(image).srgb
+    return _make_writable(read_picture(image).srgb)
 
 
 def write_png(path: Path, array: NDArray[Any], text: Mapping[str, str] | None = None) -> None:
@@ -142,6 +142,10 @@ def write_png(path: Path, array: NDArray[Any], text: Mapping[str, str] | None = 
     with write_atomically(path) as part:
         # The fast level: the low bits of interpolated maps are noise that no level compresses.
         Image.fromarray(array).save(part, "PNG", pnginfo=info, compress_level=1)
+
+
+def _make_writable(srgb: NDArray[np.uint8]) -> NDArray[np.uint8]:
+    return srgb if srgb.flags.writeable else srgb.copy()
 
 
 def _from_path(path: Path, name: str) -> Picture:

@@ -363,3 +363,20 @@ def test_a_pillow_image_is_turned_by_the_tag_that_it_carries(turned: bool) -> No
 
         image = ImageOps.exif_transpose(image)
     np.testing.assert_array_equal(read_picture(image).srgb, np.rot90(to_uint8(SKIN), -1))
+
+
+RAW_FILES: dict[str, dict[str, Any]] = {
+    "DNG": {"photometric": "rgb", "extratags": [(50706, 1, 4, (1, 4, 0, 0), True)]},
+    "a preview, as NEF and ARW begin with": {"photometric": "rgb", "subfiletype": 1},
+    "linear raw": {"photometric": "linear_raw"},
+    "a mosaic": {"photometric": "cfa"},
+}
+
+
+@pytest.mark.parametrize("kind", RAW_FILES)
+def test_raw_files_that_are_tiff_inside_are_refused(tmp_path: Path, kind: str) -> None:
+    pixels = to_uint8(SKIN)
+    path = tmp_path / "a.tif"
+    tifffile.imwrite(path, pixels[..., 0] if kind == "a mosaic" else pixels, **RAW_FILES[kind])
+    with pytest.raises(InputError, match=r"a\.tif is (a RAW file, .*develop it|not a picture)"):
+        read_picture(path)
