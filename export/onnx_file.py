@@ -17,6 +17,7 @@ from torch import Tensor, nn
 from torch.export import Dim
 
 from export.graphs import DECODED, OUTPUTS, DecoderGraph, EncoderGraph, Output, make_example
+from export.onnx_graph import finish
 from skinnet._version import __version__
 from skinnet.errors import InputError
 from skinnet.files import write_together
@@ -137,10 +138,13 @@ def _describe(path: Path, kind: str, model: SkinAutoencoder, outputs: dict[str, 
         "skinnet.license": LICENSE,
     }
     onnx.helper.set_model_props(file, metadata)
-    for node in (file.graph, *file.graph.node, *file.graph.value_info):
-        # The exporter stores the origin of each node: a quarter of a small file, with local paths.
-        node.ClearField("metadata_props")
-        node.ClearField("doc_string")
+    try:
+        finish(file)
+    except (onnx.checker.ValidationError, onnx.shape_inference.InferenceError) as error:
+        raise InputError(
+            f"The {kind} was not written: its graph is not valid ({error}). Try the versions in "
+            "constraints.txt."
+        ) from error
     onnx.save(file, path)
 
 
