@@ -15,6 +15,8 @@ import colour
 import numpy as np
 from numpy.typing import NDArray
 
+from skinnet.physics._band_averages import average_over_bands
+
 BANDS = np.arange(400, 721, 10)
 TARGET = Path(__file__).parents[1] / "skinnet" / "physics" / "tables"
 ILLUMINANTS = ("A", "FL2", "FL7", "FL11", "LED-B1", "LED-B3", "LED-B5", "LED-V1")
@@ -57,9 +59,8 @@ def write_light_tables() -> None:
 def average_bands(name: str) -> NDArray[np.float64]:
     """Average the power of an illuminant over each band."""
     # A lamp's narrow lines fall between samples that are 10 nm apart; the table has 5 nm.
-    aligned = colour.SDS_ILLUMINANTS[name].copy().align(colour.SpectralShape(395, 725, 5))
-    fine: NDArray[np.float64] = aligned.values
-    return np.asarray(fine[:-2:2] + 2 * fine[1:-1:2] + fine[2::2]) / 4
+    fine = colour.SDS_ILLUMINANTS[name].copy().align(colour.SpectralShape(380, 780, 5))
+    return average_over_bands(fine.wavelengths, fine.values[:, None], BANDS.astype(float))[:, 0]
 
 
 def write_pigments(raw: Path) -> None:

@@ -1,35 +1,38 @@
-"""Light and camera sources: by name, or measured and read from a CSV file."""
+"""Light and camera sources: by name, or measured and read from a text file."""
 
-import csv
 import difflib
 import re
 from collections.abc import Mapping
 from pathlib import Path
 
-import numpy as np
 import torch
 from jaxtyping import Float
 from torch import Tensor
 
 from skinnet.errors import InputError
+from skinnet.physics._spectrum_file import read_camera, read_light
 from skinnet.physics._tables import read_table
 from skinnet.physics.camera import spectrum_to_srgb
 from skinnet.physics.illuminants import daylight
-from skinnet.physics.spectra import WAVELENGTHS, load_cameras, load_observer
+from skinnet.physics.spectra import load_cameras, load_observer
 
 _MEAN = "mean"
 """Name of the mean of the measured cameras."""
 
 _DAYLIGHT = re.compile(r"[dD](\d{2}|\d{4,5}\s*[kK]?)$")
 _TEMPERATURES = (4000.0, 25000.0)
+_FILE = re.compile(r"[/\\]|\.[A-Za-z]\w*$")
+"""What a path has and no name: a slash, or an ending."""
 
 
-def load_light(name: str) -> Float[Tensor, "wavelength"]:
+def load_light(name: str | Path) -> Float[Tensor, "wavelength"]:
     """Load the relative power of a light at the 33 bands.
 
     Args:
         name: D65, D50 or another daylight (D5500K), a CIE illuminant of `LIGHTS`, or the path of a
-            .csv file of wavelength in nm and power.
+            text file (.csv, .tsv, .txt) of wavelength in nm and power. Its rows may have any
+            spacing; they are averaged over the bands of 10 nm, as the illuminants are. What of
+            395 to 725 nm the file does not cover is left out; 400 to 720 nm are needed.
 
     Returns:
         Power of unit sum, float64.
@@ -47,21 +50,23 @@ def load_light(name: str) -> Float[Tensor, "wavelength"]:
         >>> tuple(light.shape), round(light.sum().item(), 6)
         ((33,), 1.0)
     """
-    if name.lower().endswith(".csv"):
-        power = _read_spectra(Path(name), 1)[:, 0]
+    if (path := _as_path(name)) is not None:
+        power = torch.from_numpy(read_light(path))
         return power / power.sum()
+    name = str(name)
     if (day := _DAYLIGHT.match(name)) is not None:
         return _load_daylight(name, day.group(1))
     power = _find(name, read_table("illuminants"), "light", "D65 or another daylight, or ")
     return power / power.sum()
 
 
-def load_camera(name: str) -> Float[Tensor, "wavelength 3"]:
+def load_camera(name: str | Path) -> Float[Tensor, "wavelength 3"]:
     """Load the sensitivities of a camera at the 33 bands.
 
     Args:
-        name: One of the 52 measured cameras in any case, `mean`, or the path of a .csv file of
-            wavelength in nm and three sensitivities.
+        name: One of the 52 measured cameras in any case, `mean`, or the path of a text file of
+            wavelength in nm and the sensitivities to power of R, G and B, which are averaged as
+            `load_light` describes. Columns that the file names are taken by their names.
 
     Returns:
         Sensitivities of R, G and B, each of unit sum, float64.
@@ -78,16 +83,17 @@ def load_camera(name: str) -> Float[Tensor, "wavelength 3"]:
         >>> tuple(load_camera("nikon d200").shape)
         (33, 3)
     """
-    if name.lower().endswith(".csv"):
-        curves = _read_spectra(Path(name), 3)
+    if (path := _as_path(name)) is not None:
+        curves = torch.from_numpy(read_camera(path))
         return curves / curves.sum(0)
+    name = str(name)
     measured = load_cameras()
     if name.lower() == _MEAN:
         return torch.stack(list(measured.values())).mean(0)
     return _find(name, measured, "camera", f"{_MEAN}, or ")
 
 
-def load_spectrum_to_srgb(light: str, camera: str) -> Float[Tensor, "wavelength 3"]:
+def load_spectrum_to_srgb(light: str | Path, camera: str | Path) -> Float[Tensor, "wavelength 3"]:
     """Load the matrix from a spectrum to white-balanced linear sRGB under a light and a camera.
 
     Args:
@@ -112,6 +118,10 @@ def load_spectrum_to_srgb(light: str, camera: str) -> Float[Tensor, "wavelength 
     return spectrum_to_srgb(load_light(light), load_camera(camera), load_observer())
 
 
+def _as_path(name: str | Path) -> Path | None:
+    return Path(name) if isinstance(name, Path) or _FILE.search(name) else None
+
+
 def _find(
     name: str, known: Mapping[str, Tensor], kind: str, others: str
 ) -> Float[Tensor, "wavelength *channels"]:
@@ -122,7 +132,7 @@ def _find(
     listed = [folded[each] for each in close] or sorted(known)[:5]
     raise InputError(
         f"There is no {kind} {name!r}; known are {others}{', '.join(listed)} and others, or give a "
-        ".csv file."
+        ".csv file of wavelengths and values."
     )
 
 
@@ -135,55 +145,3 @@ def _load_daylight(name: str, number: str) -> Float[Tensor, "wavelength"]:
             f"Daylight has {_TEMPERATURES[0]:g} to {_TEMPERATURES[1]:g} K; got {name!r}."
         )
     return daylight(torch.tensor(kelvin, dtype=torch.float64))
-
-
-def _read_spectra(path: Path, columns: int) -> Float[Tensor, "wavelength columns"]:
-    """Read the columns of a CSV at the 33 bands, interpolated linearly."""
-    rows = _read_numbers(path, columns)
-    order = np.argsort(rows[:, 0], kind="stable")
-    wavelength, values = rows[order, 0], rows[order, 1:]
-    low, high = float(WAVELENGTHS[0]), float(WAVELENGTHS[-1])
-    if len(wavelength) < 2 or wavelength[0] > low or wavelength[-1] < high:
-        raise InputError(
-            f"{path} covers {wavelength[0]:g} to {wavelength[-1]:g} nm; {low:g} to {high:g} nm are "
-            "needed."
-        )
-    if (np.diff(wavelength) <= 0).any():
-        raise InputError(f"{path} has a wavelength twice; keep one row for each.")
-    bands = WAVELENGTHS.numpy()
-    curves = np.stack([np.interp(bands, wavelength, column) for column in values.T], 1)
-    if not (curves.sum(0) > 0).all():
-        raise InputError(f"{path} has a column that is zero from {low:g} to {high:g} nm.")
-    return torch.from_numpy(curves)
-
-
-def _read_numbers(path: Path, columns: int) -> Float[np.ndarray, "rows columns"]:
-    try:
-        text = path.read_text(encoding="utf-8-sig")
-    except (OSError, UnicodeDecodeError) as error:
-        raise InputError(f"{path} cannot be read as a text file; check the path.") from error
-    rows = [row for row in csv.reader(text.splitlines()) if row and not row[0].startswith("#")]
-    body = rows[1:] if rows and not _is_number(rows[0][0]) else rows
-    try:
-        numbers = np.array(body, float)
-    except ValueError as error:
-        raise InputError(
-            f"{path} has a row that is not {columns + 1} numbers: wavelength in nm, then "
-            f"{columns} {'value' if columns == 1 else 'values'}."
-        ) from error
-    if numbers.ndim != 2 or numbers.shape[1] != columns + 1:
-        raise InputError(
-            f"{path} needs {columns + 1} columns: wavelength in nm, then {columns} "
-            f"{'value' if columns == 1 else 'values'}."
-        )
-    if not np.isfinite(numbers).all() or (numbers[:, 1:] < 0).any():
-        raise InputError(f"{path} has a value that is negative or not finite.")
-    return numbers
-
-
-def _is_number(text: str) -> bool:
-    try:
-        float(text)
-    except ValueError:
-        return False
-    return True
