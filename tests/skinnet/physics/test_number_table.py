@@ -16,7 +16,8 @@ def read(folder: Path, text: str) -> NumberTable:
 
 @pytest.mark.parametrize(
     "text",
-    ["1,2.5\n3,4", "1;2,5\n3;4,0", "1\t2.5\n3\t4", " 1  2.5\n 3  4 ", "1,2.5,\n3,4,,", '"1","2,5"\n3,4'],
+    ["1,2.5\n3,4", "1;2,5\n3;4,0", "1\t2.5\n3\t4", " 1  2.5\n 3  4 ", "1,2.5,\n3,4,,",
+     '"1","2,5"\n3,4'],
 )  # fmt: skip
 def test_separators_and_decimals_are_found(tmp_path: Path, text: str) -> None:
     np.testing.assert_array_equal(read(tmp_path, text).values, [[1, 2.5], [3, 4]])
