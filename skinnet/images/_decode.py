@@ -10,6 +10,7 @@ from PIL import Image
 from skinnet.errors import InputError
 from skinnet.files import READ_ERRORS
 from skinnet.images._colour_decision import decide_colour_space
+from skinnet.images._kind import HEIF, OTHER, PICTURE, identify
 from skinnet.images._pixels import read_pixels
 from skinnet.images.picture import Picture
 
@@ -24,7 +25,6 @@ PHOTO_SUFFIXES = frozenset(
 )
 """Suffixes of the files that are taken as photographs in a folder."""
 
-_HEIF_BRANDS = frozenset(b"heic heix heim heis hevc hevx mif1 msf1".split())
 _DAMAGES = (Image.DecompressionBombError, *READ_ERRORS)
 _SUBFILE_TYPE, _PHOTOMETRIC, _DNG_VERSION = 254, 262, 50706
 _RAW_PHOTOMETRICS = (32803, 34892)
@@ -109,8 +109,11 @@ def _count_frames(image: Image.Image, name: str) -> tuple[str, ...]:
 
 
 def _open(data: bytes, name: str) -> Image.Image:
-    if is_heif(data):
+    kind = identify(BytesIO(data), name)
+    if kind is HEIF:
         return _open_heif(data, name)
+    if kind not in (PICTURE, OTHER):
+        raise InputError(f"{name} is {kind.one}, not a picture that can be read; {kind.remedy}.")
     Image.init()
     formats = [known for known in PHOTO_FORMATS if known in Image.OPEN]
     try:
@@ -121,12 +124,6 @@ def _open(data: bytes, name: str) -> Image.Image:
         raise InputError(
             f"{name} is not a picture that can be read; give a JPEG, PNG, TIFF or WebP file."
         ) from error
-
-
-def is_heif(data: bytes) -> bool:
-    """Whether the first bytes of a file are those of a HEIC or HEIF picture."""
-    brands = {data[8:12], *(data[at : at + 4] for at in range(16, min(len(data), 64), 4))}
-    return data[4:8] == b"ftyp" and b"avif" not in brands and bool(_HEIF_BRANDS & brands)
 
 
 def _open_heif(data: bytes, name: str) -> Image.Image:
