@@ -26,7 +26,7 @@ def _name_kind(one: str, remedy: str = _SAVE) -> Kind:
 
 PICTURE = Kind("a picture", "pictures")
 HEIF = _name_kind("a HEIC picture", 'pip install "skinnet[heif]" reads it; or save it as JPEG')
-RAW = Kind("a camera's RAW file", "RAW files", "develop it, and save it as 16-bit TIFF or JPEG")
+RAW = Kind("a RAW file", "RAW files", "develop it, and save it as 16-bit TIFF or JPEG")
 OTHER = Kind("a file of another kind", "other files", "give a JPEG, PNG, TIFF or WebP file")
 EMPTY = Kind("an empty file", "empty files", "was it copied completely?")
 THUMBNAIL = _name_kind("a camera's thumbnail", "give the picture itself, or rename this to .jpg")
