@@ -25,7 +25,7 @@ class _Layout(NamedTuple):
     """How a file writes its directories: classic TIFF or BigTIFF, in either byte order."""
 
     order: str
-    count: str
+    number: str
     entry: str
     offset: str
 
@@ -65,8 +65,8 @@ def _list_directories(file: _File, head: bytes) -> Iterator[_Directory]:
 
 
 def _read_directory(file: _File, place: int, layout: _Layout) -> tuple[_Directory, int]:
-    width = struct.calcsize(layout.order + layout.count)
-    (count,) = struct.unpack(layout.order + layout.count, _read(file, place, width))
+    width = struct.calcsize(layout.order + layout.number)
+    (count,) = struct.unpack(layout.order + layout.number, _read(file, place, width))
     size = struct.calcsize(layout.order + layout.entry)
     count = min(count, _MOST_ENTRIES)
     body = _read(file, place + width, count * size)
