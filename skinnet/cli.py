@@ -1,19 +1,25 @@
 """The `skinnet` command; each verb imports what is slow to import only when it runs."""
 
 import argparse
+import hashlib
 import json
 import os
 import sys
-from collections.abc import Iterator, Sequence
-from io import BufferedIOBase
+from collections import Counter
+from collections.abc import Sequence
+from io import BytesIO
 from pathlib import Path
-from typing import TYPE_CHECKING, BinaryIO
+from typing import TYPE_CHECKING, Any
 
 from skinnet._version import __version__
 from skinnet.errors import InputError
 
 if TYPE_CHECKING:
+    from skinnet.images._walk import Found, Walk
+    from skinnet.images.picture import Picture
+    from skinnet.inference._own_results import Source
     from skinnet.inference.decomposer import Decomposer
+    from skinnet.inference.decomposition import Decomposition
 
 PIPELINE = {
     "fit-shape": "fit a shape model to scans",
@@ -25,6 +31,14 @@ PIPELINE = {
 """Verbs of the classic pipeline, which take their settings from YAML (`skinnet.pipeline`)."""
 
 _STDIN = "-"
+_READ, _FACELESS, _WRITTEN_NOT, _READ_NOT = (
+    "read",
+    "without a face",
+    "could not be written",
+    "could not be read",
+)
+"""What becomes of an input, as the count at the end of a run says it."""
+
 _OK, _BROKEN_PIPE, _BAD_INPUT, _INTERRUPTED = 0, 1, 2, 130
 """Exit codes; the second is for an output pipe whose reader has closed it."""
 
@@ -84,7 +98,12 @@ def _run_pipeline(verb: str, arguments: list[str]) -> int:
 def _add_predict(verbs: "argparse._SubParsersAction[argparse.ArgumentParser]") -> None:
     verb = verbs.add_parser("predict", help="make maps, a panel and a summary of photographs")
     verb.add_argument(
-        "input", nargs="+", help="photographs, a folder of them, or - for standard input"
+        "input",
+        nargs="+",
+        help="photographs, folders of them, patterns such as '*.jpg', or - for standard input",
+    )
+    verb.add_argument(
+        "-r", "--recursive", action="store_true", help="search the subfolders of folders too"
     )
     verb.add_argument(
         "-o",
@@ -114,7 +133,8 @@ def _add_edit(verbs: "argparse._SubParsersAction[argparse.ArgumentParser]") -> N
         "--output",
         type=Path,
         metavar="FILE",
-        help=".png or .jpg; by default INPUT_edited.png. JPEG changes every pixel a little",
+        help=".png or .jpg; by default INPUT_edited.png, with a number if that is another file. "
+        "JPEG changes every pixel a little",
     )
     for pigment in ("melanin", "hemoglobin"):
         verb.add_argument(
@@ -144,121 +164,129 @@ def _add_common(verb: argparse.ArgumentParser) -> None:
 
 def _predict(options: argparse.Namespace) -> int:
     """Decompose every input; report bad inputs and continue. The exit code is 2 if any was bad."""
+    from skinnet.images._walk import walk
     from skinnet.inference.decomposer import Decomposer
 
     decomposer = Decomposer(options.model)
     decomposer.load()
-    code = _OK
-    taken: set[tuple[Path, str]] = set()
-    for source in _list_photographs(options.input):
+    found = walk(options.input, options.recursive)
+    counts: Counter[str] = Counter()
+    for picture in found.pictures:
         try:
-            if isinstance(source, InputError):
-                raise source
-            folder, stem = _choose_stem(source, options.output, taken)
-            _predict_one(decomposer, source, folder, stem, options)
+            counts[_predict_one(decomposer, picture, options)] += 1
         except InputError as error:
-            code = _report(error)
-    return code
+            counts[_READ_NOT] += 1
+            _report(error)
+    for note in found.notes:
+        _note(note)
+    single = len(found.pictures) == 1 and found.pictures[0].path == options.input[0]
+    if not single or found.passed_over or len(options.input) > 1:
+        _note(_describe_run(counts, found))
+    return _OK if counts.total() == counts[_READ] else _BAD_INPUT
 
 
-def _predict_one(
-    decomposer: "Decomposer", source: str, folder: Path, stem: str, options: argparse.Namespace
+def _predict_one(decomposer: "Decomposer", found: "Found", options: argparse.Namespace) -> str:
+    """Decompose a picture, and write its results. Returns under what it is counted."""
+    from skinnet.errors import NoFaceError
+
+    if found.error is not None:
+        raise found.error
+    source, picture, notes = _read(found)
+    try:
+        decomposition = decomposer(picture, options.whole_image, source.name, options.detail)
+    except NoFaceError as error:
+        _report(error)
+        return _FACELESS
+    try:
+        _write(source, picture, decomposition, notes, options)
+    except InputError as error:
+        _report(error)
+        return _WRITTEN_NOT
+    return _READ
+
+
+def _write(
+    source: "Source",
+    picture: "Picture",
+    decomposition: "Decomposition",
+    notes: Sequence[str],
+    options: argparse.Namespace,
 ) -> None:
-    from skinnet.images.photograph import read_picture
-    from skinnet.inference.results import write_results
+    from skinnet.inference._own_results import OUTPUT, choose_result_stem
+    from skinnet.inference.results import _list_ends, write_results
 
-    name = _name(source)
-    picture = read_picture(_open(source), name)
-    decomposition = decomposer(picture, options.whole_image, name, options.detail)
-    summary = {"file": name} | decomposition.summary()
-    count = write_results(folder, stem, picture.srgb, decomposition, summary)
-    for note in decomposition.notes:
-        print(f"skinnet: {note}", file=sys.stderr)
+    folder: Path = options.output or source.folder / OUTPUT
+    stem = choose_result_stem(folder, source, _list_ends(decomposition))
+    if stem != source.stem:
+        others = f"{folder} holds other files of the name {source.stem}"
+        notes = (*notes, f"{others}; the results of {source.name} are numbered: {stem}.")
+    summary = {"file": source.name, "input": source.describe(folder)} | decomposition.summary()
+    summary["notes"] = [*notes, *summary["notes"]]
+    count = write_results(folder, stem, picture.srgb, decomposition, summary, source.digest)
+    for note in summary["notes"]:
+        _note(note)
     if options.json:
         _print(json.dumps(summary, allow_nan=False))
         return
     written = f"{count} files: {folder / stem}_*.png and {folder / stem}.json"
+    _print(f"{source.name}: {_describe_skin(summary)}; {written}")
+
+
+def _describe_skin(summary: dict[str, Any]) -> str:
     means = {pigment: summary["maps"][pigment]["mean"] for pigment in ("melanin", "hemoglobin")}
     if means["melanin"] is None:
-        _print(f"{name}: no skin was found; {written}")
-        return
+        return "no skin was found"
     numbers = ", ".join(f"{pigment} {mean:.3g}" for pigment, mean in means.items())
-    _print(f"{name}: {numbers} on skin, {summary['skin_share']:.0%} of the crop; {written}")
+    return f"{numbers} on skin, {summary['skin_share']:.0%} of the crop"
+
+
+def _describe_run(counts: Counter[str], found: "Walk") -> str:
+    """How many pictures were read, passed over and not read, and the reasons."""
+    parts = [f"{counts[_READ]} {_READ}", f"{len(found.passed_over)} passed over"]
+    parts += [f"{counts[each]} {each}" for each in (_FACELESS, _WRITTEN_NOT) if counts[each]]
+    reasons = found.describe_passed_over()
+    passed_over = f" Passed over: {reasons}." if reasons else ""
+    return f"{', '.join(parts)}, {counts[_READ_NOT]} {_READ_NOT}.{passed_over}"
 
 
 def _edit(options: argparse.Namespace) -> int:
     """Write one photograph with its pigments multiplied."""
-    from skinnet.images.photograph import read_photo
+    from skinnet.images._walk import find_one
+    from skinnet.inference._own_results import choose_edit_target
     from skinnet.inference.decomposer import Decomposer
     from skinnet.inference.results import _check_suffix, _write_picture
 
-    source: str = options.input
-    path = _as_path(source)
-    target: Path = options.output or path.parent / f"{path.stem}_edited.png"
-    _check_suffix(target)
-    if source != _STDIN and target.exists() and path.exists() and target.samefile(path):
-        raise InputError(f"{target} is the photograph itself; choose another file with -o.")
+    if options.output is not None:
+        _check_suffix(options.output)
     decomposer = Decomposer(options.model)
-    name = _name(source)
-    photo = read_photo(_open(source), name)
-    edited = decomposer.edit(photo, options.melanin, options.hemoglobin, options.whole_image, name)
-    _write_picture(target, edited)
-    _print(f"{name}: {target}")
+    source, picture, notes = _read(find_one(options.input))
+    target = choose_edit_target(source, options.output, ".png")
+    edited = decomposer.edit(
+        picture, options.melanin, options.hemoglobin, options.whole_image, source.name
+    )
+    _write_picture(target, edited, source.digest)
+    for note in (*notes, *picture.notes):
+        _note(note)
+    _print(f"{source.name}: {target}")
     return _OK
 
 
-def _list_photographs(inputs: Sequence[str]) -> Iterator[str | InputError]:
-    """Each photograph, those of a folder in the order of their names; errors for bad folders."""
-    for source in inputs:
-        if not source:
-            yield InputError("An empty name was given; name a photograph, a folder, or - .")
-            continue
-        try:
-            if source != _STDIN and Path(source).is_dir():
-                yield from _list_folder(Path(source))
-            else:
-                yield source
-        except OSError as error:
-            yield InputError(f"{source} cannot be read ({error.strerror}); check the path.")
+def _read(found: "Found") -> tuple["Source", "Picture", tuple[str, ...]]:
+    """Read a picture, with the record of its file and the notes on it."""
+    from skinnet.images._mark import read_mark
+    from skinnet.images._result_names import compute_digest
+    from skinnet.images._walk import check_mark
+    from skinnet.images.photograph import read_picture
+    from skinnet.inference._own_results import Source
 
-
-def _list_folder(folder: Path) -> list[str | InputError]:
-    from skinnet.images._decode import PHOTO_SUFFIXES
-
-    visible = (file for file in sorted(folder.iterdir()) if not file.name.startswith("."))
-    photographs = [
-        str(file) for file in visible if file.suffix.lower() in PHOTO_SUFFIXES and file.is_file()
-    ]
-    suffixes = ", ".join(sorted(PHOTO_SUFFIXES))
-    return [*photographs] or [
-        InputError(f"The folder {folder} holds no photographs; they end in {suffixes}.")
-    ]
-
-
-def _choose_stem(
-    source: str, output: Path | None, taken: set[tuple[Path, str]]
-) -> tuple[Path, str]:
-    """Folder and stem of a photograph's files; a stem that is taken gets a number."""
-    path = _as_path(source)
-    folder = output or path.parent / "skinmaps"
-    stem, number = path.stem, 1
-    while (folder, stem.casefold()) in taken:
-        number += 1
-        stem = f"{path.stem}-{number}"
-    taken.add((folder, stem.casefold()))
-    return folder, stem
-
-
-def _as_path(source: str) -> Path:
-    return Path("stdin" if source == _STDIN else source)
-
-
-def _name(source: str) -> str:
-    return "standard input" if source == _STDIN else source
-
-
-def _open(source: str) -> str | BinaryIO | BufferedIOBase:
-    return sys.stdin.buffer if source == _STDIN else source
+    if found.path != _STDIN:
+        path = Path(found.path)
+        picture = read_picture(path)
+        return Source(found.path, path, compute_digest(path)), picture, found.notes
+    name, data = "standard input", sys.stdin.buffer.read()
+    notes = check_mark(read_mark(BytesIO(data)), name)
+    picture = read_picture(BytesIO(data), name)
+    return Source(name, None, hashlib.sha256(data).hexdigest()), picture, notes
 
 
 def _print(text: str) -> None:
@@ -267,11 +295,15 @@ def _print(text: str) -> None:
     print(text.encode(encoding, "backslashreplace").decode(encoding), flush=True)
 
 
+def _note(sentence: str) -> None:
+    print(f"skinnet: {sentence}", file=sys.stderr, flush=True)
+
+
 def _report(error: Exception) -> int:
     sentence = str(error)
     if isinstance(error, OSError):
         sentence = (
             f"{error.filename or 'A file'} cannot be used ({error.strerror}); check the path."
         )
-    print(f"skinnet: {sentence}", file=sys.stderr)
+    _note(sentence)
     return _BAD_INPUT

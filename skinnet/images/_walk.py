@@ -11,7 +11,7 @@ from typing import NamedTuple
 from skinnet.errors import InputError
 from skinnet.images import _found_files as files
 from skinnet.images._kind import HEIF, Kind, is_readable, promises_picture
-from skinnet.images._mark import EDITED, read_mark
+from skinnet.images._mark import EDITED, Mark, read_mark
 
 STDIN = "-"
 RESULT = Kind("a result of skinnet", "results of skinnet", "give the photograph itself")
@@ -22,10 +22,11 @@ _MOST_NAMES = 3
 
 
 class Found(NamedTuple):
-    """A picture to read, or an error about what was asked for and cannot be had."""
+    """A picture to read with notes on it, or an error about what was asked for."""
 
     path: str
     error: InputError | None = None
+    notes: tuple[str, ...] = ()
 
 
 class PassedOver(NamedTuple):
@@ -73,26 +74,42 @@ def walk(inputs: Sequence[str], recursive: bool = False) -> Walk:
     return walker.found
 
 
-def find_one(source: str) -> tuple[str, list[str]]:
+def find_one(source: str) -> Found:
     """Find the one picture that is named, or by a pattern; a folder is left to the reader.
-
-    Returns:
-        Its path, and notes on it.
 
     Raises:
         InputError: None is there, or several match a pattern, or it is a result.
     """
     if source and os.path.isdir(source):
-        return source, []
-    found = walk([source])
-    for picture in found.pictures:
+        return Found(source)
+    pictures = walk([source]).pictures
+    for picture in pictures:
         if picture.error is not None:
             raise picture.error
-    if len(found.pictures) > 1:
+    if len(pictures) > 1:
         raise InputError(
-            f"The pattern {source} matches {len(found.pictures)} photographs; give one of them."
+            f"The pattern {source} matches {len(pictures)} photographs; give one of them."
         )
-    return found.pictures[0].path, found.notes
+    return pictures[0]
+
+
+def check_mark(mark: Mark | None, name: str) -> tuple[str, ...]:
+    """Refuse a result that is given as a photograph.
+
+    Returns:
+        A note if it is a photograph that skinnet has edited.
+
+    Raises:
+        InputError: It is a map, a panel or another result.
+    """
+    if mark is None:
+        return ()
+    if mark.part == EDITED:
+        return (f"{name} was edited by skinnet; its skin is read as it is after the edit.",)
+    raise InputError(
+        f"{name} is a result of skinnet ({mark.part}), not a photograph; give the photograph that "
+        "it was made from."
+    )
 
 
 def describe_formats() -> str:
@@ -132,20 +149,15 @@ class _Walker:
 
     def _add_file(self, source: str) -> None:
         mark = read_mark(source)
-        if mark is not None and mark.part != EDITED:
-            self._fail(
-                source,
-                f"{source} is a result of skinnet ({mark.part}), not a photograph; give the "
-                "photograph that it was made from.",
-            )
-        elif mark is not None and not self.alone:
+        if mark is not None and mark.part == EDITED and not self.alone:
             self._pass_over(source, RESULT)
+            return
+        try:
+            notes = check_mark(mark, source)
+        except InputError as error:
+            self.found.pictures.append(Found(source, error))
         else:
-            if mark is not None:
-                self.found.notes.append(
-                    f"{source} was edited by skinnet; its skin is read as it is after the edit."
-                )
-            self._add_once(source, files.get_identity(source))
+            self._add_once(source, files.get_identity(source), notes)
 
     def _add_absent(self, source: str) -> None:
         if os.path.islink(source):
@@ -232,9 +244,9 @@ class _Walker:
         again = sum(kind in (SECOND_NAME, _FOLDER_AGAIN) for _, kind in self.found.passed_over)
         return len(self.found.pictures) + again
 
-    def _add_once(self, source: str, identity: object) -> None:
+    def _add_once(self, source: str, identity: object, notes: tuple[str, ...] = ()) -> None:
         if self._is_new(identity):
-            self.found.pictures.append(Found(source))
+            self.found.pictures.append(Found(source, None, notes))
         else:
             self._pass_over(source, SECOND_NAME)
 

@@ -10,6 +10,7 @@ from PIL import Image
 
 from skinnet.errors import InputError
 from skinnet.files import write_atomically, write_text, write_together
+from skinnet.images._mark import EDITED, PROCESSING_SOFTWARE, Mark
 from skinnet.images.photograph import write_png
 from skinnet.inference.decomposition import Decomposition
 from skinnet.inference.panel import draw_panel
@@ -26,11 +27,13 @@ def write_results(
     photo: NDArray[np.uint8],
     decomposition: Decomposition,
     summary: dict[str, Any],
+    digest: str = "",
 ) -> int:
     """Write the panel, all maps, the reconstruction and the summary of a photograph.
 
     Maps are 16-bit PNG files in which value = scale * pixel + offset; their tEXt chunks hold
-    `scale`, `offset` and `unit`.
+    `scale`, `offset` and `unit`. All pictures carry a mark, so that they are not taken for
+    photographs. Files of these names are replaced.
 
     Args:
         folder: Where to write; it is made if it does not exist.
@@ -38,6 +41,7 @@ def write_results(
         photo: The photograph, uint8 sRGB [H, W, 3].
         decomposition: Its decomposition.
         summary: Content of the JSON file, usually `decomposition.summary()`.
+        digest: SHA-256 of the photograph's file for the mark, in hexadecimals; "" if not known.
 
     Returns:
         The number of files.
@@ -59,30 +63,43 @@ def write_results(
     try:
         folder.mkdir(parents=True, exist_ok=True)
         with write_together() as temporary:
-            panel = draw_panel(photo, decomposition)
-            write_png(temporary(folder / f"{stem}_panel.png"), panel)
-            reconstruction = temporary(folder / f"{stem}_reconstruction.png")
-            write_png(reconstruction, decomposition.reconstruction)
-            for name, values in decomposition.maps().items():
-                _write_map(temporary(folder / f"{stem}_{name}.png"), name, values, decomposition)
-            text = json.dumps(summary, indent=2, allow_nan=False)
-            write_text(temporary(folder / f"{stem}.json"), text + "\n")
+            pictures = {
+                "panel": draw_panel(photo, decomposition),
+                "reconstruction": decomposition.reconstruction,
+            }
+            for name, picture in pictures.items():
+                text = Mark("predict", name, digest).to_text()
+                write_png(temporary(folder / f"{stem}_{name}.png"), picture, text)
+            for name in decomposition.maps():
+                path = temporary(folder / f"{stem}_{name}.png")
+                _write_map(path, name, decomposition, Mark("predict", "map", digest))
+            record = json.dumps(summary, indent=2, allow_nan=False)
+            write_text(temporary(folder / f"{stem}.json"), record + "\n")
     except OSError as error:
         raise InputError(
             f"{folder} cannot be written ({error.strerror}); choose another folder with -o."
         ) from error
-    return len(decomposition.maps()) + 3
+    return len(_list_ends(decomposition))
 
 
-def _write_picture(path: Path, photo: NDArray[np.uint8]) -> None:
-    """Write uint8 sRGB [H, W, 3] as PNG or JPEG, by the suffix."""
+def _list_ends(decomposition: Decomposition) -> list[str]:
+    """List the ends of the names of the files that `write_results` writes."""
+    names = ("panel", "reconstruction", *decomposition.maps())
+    return [*(f"_{name}.png" for name in names), ".json"]
+
+
+def _write_picture(path: Path, photo: NDArray[np.uint8], digest: str = "") -> None:
+    """Write uint8 sRGB [H, W, 3] as PNG or JPEG, by the suffix, with the mark of an edit."""
     _check_suffix(path)
+    mark = Mark("edit", EDITED, digest)
     try:
         if path.suffix.lower() == ".png":
-            write_png(path, photo)
+            write_png(path, photo, mark.to_text())
         else:
+            exif = Image.Exif()
+            exif[PROCESSING_SOFTWARE] = str(mark)
             with write_atomically(path) as part:
-                Image.fromarray(photo).save(part, "JPEG", quality=95, subsampling=0)
+                Image.fromarray(photo).save(part, "JPEG", quality=95, subsampling=0, exif=exif)
     except OSError as error:
         raise InputError(
             f"{path} cannot be written ({error.strerror}); choose another file with -o."
@@ -96,13 +113,12 @@ def _check_suffix(path: Path) -> None:
         )
 
 
-def _write_map(
-    path: Path, name: str, values: NDArray[np.float32], decomposition: Decomposition
-) -> None:
-    info = decomposition.describe_map(name)
+def _write_map(path: Path, name: str, decomposition: Decomposition, mark: Mark) -> None:
+    info, values = decomposition.describe_map(name), decomposition.maps()[name]
     low = min(info.range[0], float(values.min()))
     high = max(info.range[1], float(values.max()))
     scale = (high - low) / _LEVELS or 1.0
     pixels = np.rint((values - low) / scale).clip(0, _LEVELS).astype(np.uint16)
     text = {"scale": repr(scale), "offset": repr(low), "unit": info.unit}
-    write_png(path, pixels, {"Description": info.description, "map": name} | text)
+    text = {"Description": info.description, "map": name} | text | mark.to_text()
+    write_png(path, pixels, text)
