@@ -112,7 +112,7 @@ def _read_group(
         return _colour_group(file, group, material, notes)
     if given is not None and not all(_has_uv(one, material) for one in group.primitives):
         return [_convert_bare(file, one, material) for one in group.primitives]
-    picture = read_base_picture(file, material) if given is None else given
+    picture = read_base_picture(file, material, notes) if given is None else given
     mapped = [_map(file, primitive, material) for primitive in group.primitives]
     wraps = _read_wraps(file, material)
     mapped, picture = wrap_texture(mapped, picture, wraps, str(file.path))

@@ -1,19 +1,19 @@
 """Pictures of glTF textures."""
 
-import warnings
+from dataclasses import replace
 from io import BytesIO
 from typing import Any
 
 import numpy as np
-from PIL import Image
+from numpy.typing import NDArray
 
 from skinnet.errors import InputError
-from skinnet.files import READ_ERRORS
 from skinnet.images import linear_to_srgb, srgb_to_linear, to_uint8
-from skinnet.images._decode import PHOTO_FORMATS
+from skinnet.images._decode import decode_file
+from skinnet.images.picture import Picture
 from skinnet.mesh._gltf.container import GltfFile
 from skinnet.mesh._gltf.materials import Material
-from skinnet.mesh._texture_file import Texture, decode_texture
+from skinnet.mesh._texture_file import Texture
 
 _PREFERRED = ("EXT_texture_webp", "EXT_texture_avif")
 _UNREAD = {
@@ -24,8 +24,10 @@ _UNREAD = {
 }
 
 
-def read_base_picture(file: GltfFile, material: Material) -> Texture:
+def read_base_picture(file: GltfFile, material: Material, notes: list[str]) -> Texture:
     """Read the picture of a material's base colour, multiplied with its factor.
+
+    What was assumed of it is added to `notes`.
 
     Raises:
         InputError: For a picture that is missing, damaged, or of a kind that is not read.
@@ -33,7 +35,7 @@ def read_base_picture(file: GltfFile, material: Material) -> Texture:
     texture = file.get("textures", material.texture)
     image = file.get("images", _find_image(file, texture))
     name = f"The picture {_name(image)} of {file.path}"
-    picture = _decode(_read_bytes(file, image), name, material)
+    picture = _decode(_read_bytes(file, image), name, material, notes)
     if (material.factor == 1).all():
         return picture
     levels = srgb_to_linear(np.arange(256, dtype=np.uint8))[:, None] * material.factor
@@ -68,39 +70,36 @@ def _read_bytes(file: GltfFile, image: dict[str, Any]) -> bytes:
     return file.read_view(image["bufferView"])
 
 
-def _decode(data: bytes, name: str, material: Material) -> Texture:
+def _decode(data: bytes, name: str, material: Material, notes: list[str]) -> Texture:
     kind = next((kind for magic, kind in _UNREAD.items() if data.startswith(magic)), None)
     if kind is not None:
         raise InputError(
             f"{name} is {kind}, which is not read; export it with PNG or JPEG textures, or give "
             "the texture's picture."
         )
-    Image.init()
-    formats = [known for known in PHOTO_FORMATS if known in Image.OPEN]
-    try:
-        with warnings.catch_warnings():
-            warnings.simplefilter("ignore")
-            image = Image.open(BytesIO(data), formats=formats)
-            return decode_texture(_apply_alpha(image, material), name)
-    except InputError:
-        raise
-    except (Image.DecompressionBombError, *READ_ERRORS) as error:
-        raise InputError(
-            f"{name} cannot be read as a picture ({error}); export it with PNG or JPEG textures."
-        ) from error
+    picture = decode_file(BytesIO(data), name, upright=False)
+    notes += picture.notes
+    space = picture.colour_space
+    # glTF says that statements of the colour space are ignored, so tools leave them as they were in
+    # the camera's file, and there they are true.
+    if not space.name.startswith("sRGB"):
+        notes.append(
+            f"{name} is in {space.name} ({space.known_from}), and is read so; viewers of glTF "
+            "take it as sRGB."
+        )
+    return replace(picture, alpha=_compute_alpha(picture, material)).srgb
 
 
-def _apply_alpha(image: Image.Image, material: Material) -> Image.Image:
+def _compute_alpha(picture: Picture, material: Material) -> NDArray[Any] | None:
     """Drop the alpha that a material ignores; cut off or scale the alpha that it uses."""
-    if not image.has_transparency_data and material.alpha == 1:
-        return image
-    if material.cutoff < 0:
-        plain = image.convert("L" if image.mode in ("LA", "La") else "RGB")
-        plain.info.pop("transparency", None)
-        return plain
-    visible = image.convert("RGBA")
-    alpha = np.asarray(visible.getchannel("A")) * material.alpha
+    if material.cutoff < 0 or (picture.alpha is None and material.alpha == 1):
+        return None
+    dtype = picture.pixels.dtype
+    top = np.iinfo(dtype).max
+    stored = (
+        np.full(picture.pixels.shape[:2], top, dtype) if picture.alpha is None else picture.alpha
+    )
+    alpha = stored * material.alpha
     if material.cutoff > 0:
-        alpha = np.where(alpha >= 255 * material.cutoff, 255, 0)
-    visible.putalpha(Image.fromarray(alpha.round().astype(np.uint8)))
-    return visible
+        alpha = np.where(alpha >= top * material.cutoff, top, 0)
+    return np.rint(alpha).astype(dtype)
