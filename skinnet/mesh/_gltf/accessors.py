@@ -26,12 +26,12 @@ def read_accessor(file: GltfFile, index: Any, normalise: bool = False) -> Values
         InputError: If the accessor is not as glTF says, or goes beyond its buffer.
     """
     accessor = file.get("accessors", index)
-    kind = _COMPONENTS.get(accessor.get("componentType"))
-    width = _WIDTHS.get(accessor.get("type"))
+    kind = _COMPONENTS.get(accessor["componentType"])
+    width = _WIDTHS.get(accessor["type"])
     if kind is None or width is None:
         raise file.damage(
-            f"its accessor {index} has the unknown type {accessor.get('componentType')} "
-            f"{accessor.get('type')}"
+            f"its accessor {index} has the unknown type {accessor['componentType']} "
+            f"{accessor['type']}"
         )
     shape = accessor["count"], width
     if "bufferView" in accessor:
@@ -62,7 +62,7 @@ def _read_view(
 def _replace(file: GltfFile, index: Any, values: Values, sparse: dict[str, Any]) -> Values:
     """Replace the rows that a sparse accessor lists."""
     count, where = sparse["count"], sparse["indices"]
-    kind = _COMPONENTS.get(where.get("componentType"))
+    kind = _COMPONENTS.get(where["componentType"])
     if kind is None:
         raise file.damage(f"its accessor {index} has sparse indices of an unknown type")
     rows = _read_view(file, where, np.dtype(kind), (count, 1))[:, 0]

@@ -147,7 +147,11 @@ def _split_chunks(path: Path, data: bytes) -> tuple[bytes, bytes | None]:
         if place + 8 + size > len(data):
             raise _damage(path, f"a chunk of {size:,} bytes goes beyond its end")
         chunks.setdefault(kind, data[place + 8 : place + 8 + size])
-        place += 8 + size + -size % 4
+        # Sizes are multiples of four; where one is not, writers differ on whether padding follows.
+        place += 8 + size
+        padding = -size % 4
+        if data[place + padding + 4 : place + padding + 8] == b"BIN\0":
+            place += padding
     if _JSON not in chunks:
         raise _damage(path, "it has no JSON chunk")
     return chunks[_JSON], chunks.get(_BINARY)

@@ -46,7 +46,8 @@ def compute_transforms(file: GltfFile) -> dict[int, Transform]:
     }
     known: dict[int, Transform] = {}
     for number in range(len(nodes)):
-        chain, above = [], number
+        chain: list[int] = []
+        above: int | None = number
         while above is not None and above not in known:
             if len(chain) > len(nodes):
                 raise file.damage(f"its node {number} is its own ancestor")

@@ -60,7 +60,10 @@ def read_attribute(file: GltfFile, primitive: Primitive, name: str) -> Float[np.
     """Read texture coordinates or colours, a row for each vertex; integer colours are fractions."""
     number = primitive.attributes[name]
     values = read_accessor(file, number, name.startswith("COLOR")).astype(np.float64)
-    return _check_count(file, name, values, len(primitive.geometry.vertices))
+    checked: Float[np.ndarray, "_ _"] = _check_count(
+        file, name, values, len(primitive.geometry.vertices)
+    )
+    return checked
 
 
 def _refuse_compressed(file: GltfFile, primitive: dict[str, Any]) -> None:
