@@ -1,8 +1,9 @@
 """The base class of the hybrid and the linear model."""
 
 from abc import ABC, abstractmethod
+from collections.abc import Mapping
 from pathlib import Path
-from typing import TypeVar
+from typing import Any, TypeVar
 
 import numpy as np
 import torch
@@ -252,16 +253,19 @@ class AppearanceModel(nn.Module, ABC):
         """
         return self.statistics.sample(count, seed)
 
-    def save(self, path: Path) -> None:
+    def save(self, path: Path, origin: Mapping[str, Any] | None = None) -> None:
         """Write the model to a .npz file, all of it or nothing.
 
         Args:
             path: The file, with the suffix .npz.
+            origin: What the file states of its origin, as of `save_maps`.
 
         Raises:
             InputError: If the path does not end in .npz or cannot be written.
         """
-        _model_arrays.save_model(path, type(self).__name__, self.statistics, self.mask, self.colour)
+        _model_arrays.save_model(
+            path, type(self).__name__, self.statistics, self.mask, self.colour, origin or {}
+        )
 
     @classmethod
     def load(cls: type[_Model], path: Path) -> _Model:

@@ -38,12 +38,14 @@ def save_model(
     statistics: PrincipalComponents,
     mask: Bool[np.ndarray, "size size"],
     colour: SkinColour,
+    origin: Mapping[str, Any],
 ) -> None:
     """Write a model of the given kind, which is the name of its class."""
     header = {
         "colour": colour.to_record(),
         "total": statistics.total,
         "subjects": statistics.subjects,
+        **origin,
     }
     arrays = {name: getattr(statistics, name) for name in STATISTICS}
     write_arrays(path, kind, header, arrays | {"mask": mask})

@@ -1,6 +1,8 @@
 """A joint model of shape and appearance, future work in section 7 of Alotaibi & Smith 2017."""
 
+from collections.abc import Mapping
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import torch
@@ -165,11 +167,12 @@ class JointModel(nn.Module):
         """
         return self.statistics.sample(count, seed)
 
-    def save(self, path: Path) -> None:
+    def save(self, path: Path, origin: Mapping[str, Any] | None = None) -> None:
         """Write the model to a .npz file, all of it or nothing.
 
         Args:
             path: The file, with the suffix .npz.
+            origin: What the file states of its origin, as of `save_maps`.
 
         Raises:
             InputError: If the path does not end in .npz or cannot be written.
@@ -179,6 +182,7 @@ class JointModel(nn.Module):
             "weight": self.weight,
             "total": statistics.total,
             "subjects": statistics.subjects,
+            **(origin or {}),
         }
         arrays = {name: getattr(statistics, name) for name in _model_arrays.STATISTICS}
         arrays["deviations"] = self.deviations

@@ -1,6 +1,8 @@
 """The file of one person's maps: NAME_maps.npz."""
 
+from collections.abc import Mapping
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 
@@ -12,13 +14,19 @@ _KIND = "SkinTexture"
 _ARRAYS = ("f_mel", "f_blood", "offset", "mask")
 
 
-def save_maps(path: Path, texture: SkinTexture, colour: SkinColour) -> None:
+def save_maps(
+    path: Path,
+    texture: SkinTexture,
+    colour: SkinColour,
+    origin: Mapping[str, Any] | None = None,
+) -> None:
     """Write one person's maps to a .npz file, all of it or nothing.
 
     Args:
         path: NAME_maps.npz.
         texture: The maps.
         colour: Light, camera and calibration under which they were inverted.
+        origin: What the file states of its origin, in primitives: `mark` and `input` of a command.
 
     Raises:
         InputError: If the path does not end in .npz or cannot be written.
@@ -34,7 +42,7 @@ def save_maps(path: Path, texture: SkinTexture, colour: SkinColour) -> None:
         (True, 'D65')
     """
     arrays = {name: getattr(texture, name) for name in _ARRAYS}
-    header = {"name": texture.name, "colour": colour.to_record()}
+    header = {"name": texture.name, "colour": colour.to_record(), **(origin or {})}
     _model_arrays.write_arrays(path, _KIND, header, arrays)
 
 

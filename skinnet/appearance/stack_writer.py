@@ -49,8 +49,8 @@ def write_stack(
         The finished stack.
 
     Raises:
-        InputError: If the folder holds another stack, there are fewer than two subjects, their
-            resolutions differ, or the disk is too full.
+        InputError: If the folder holds another stack or other files, there are fewer than two
+            subjects, their resolutions differ, or the disk is too full.
 
     Example:
         >>> import tempfile
@@ -74,6 +74,7 @@ def write_stack(
         "colour": colour.to_record(),
     }
     folder.mkdir(parents=True, exist_ok=True)
+    _check_names(folder)
     done, size = _read_progress(folder, state["digest"])
     for index, (name, make) in enumerate(subjects.items()):
         if index < done:
@@ -89,6 +90,16 @@ def write_stack(
         _write(folder, index, texture)
         write_text(folder / _STATE, json.dumps(state | {"size": size, "done": index + 1}))
     return open_stack(folder)
+
+
+def _check_names(folder: Path) -> None:
+    """Refuse a folder of other files: a stack is removed as a whole when it is not needed."""
+    names = sorted(file.name for file in folder.iterdir() if not file.name.startswith("."))
+    others = [name for name in names if name not in (_FEATURES, _MASKS, _STATE)]
+    if others:
+        raise InputError(
+            f"{folder} holds other files ({', '.join(others[:3])}); choose another folder."
+        )
 
 
 def _read_progress(folder: Path, digest: str) -> tuple[int, int]:

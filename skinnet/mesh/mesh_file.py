@@ -1,13 +1,14 @@
 """Mesh files: OBJ, PLY, glTF and STL are read, OBJ and PLY are written."""
 
+from collections.abc import Mapping
 from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
-from PIL import Image
 
 from skinnet.errors import InputError
 from skinnet.files import write_together
+from skinnet.images.photograph import write_png
 from skinnet.mesh._content import read_content
 from skinnet.mesh._mesh_parts import MeshContent, MeshPart, concatenate
 from skinnet.mesh._seams import merge_coordinates, merge_vertices
@@ -60,7 +61,7 @@ def read_mesh(path: Path, texture: Path | None = None) -> Mesh:
     return replace(mesh, uv=uv, uv_triangles=uv_triangles, texture=atlas.texture)
 
 
-def write_mesh(path: Path, mesh: Mesh) -> None:
+def write_mesh(path: Path, mesh: Mesh, text: Mapping[str, str] | None = None) -> None:
     """Write a mesh as OBJ or PLY, with its texture as a PNG beside it.
 
     The files (an OBJ has an MTL too) appear together or not at all.
@@ -68,6 +69,7 @@ def write_mesh(path: Path, mesh: Mesh) -> None:
     Args:
         path: The file, with suffix .obj or .ply.
         mesh: The mesh.
+        text: What to write into the files by keyword, as comments and as tEXt chunks of the PNG.
 
     Raises:
         InputError: For another suffix, or if a file cannot be written.
@@ -88,15 +90,17 @@ def write_mesh(path: Path, mesh: Mesh) -> None:
     """
     path = Path(path)
     writers = {".obj": _format_obj, ".ply": _format_ply}
+    text = text or {}
     if path.suffix.lower() not in writers:
         raise InputError(f"Meshes are written as .obj or .ply; got {path}.")
     picture = path.with_suffix(".png")
     with write_together() as beside:
-        beside(path).write_bytes(writers[path.suffix.lower()](path, mesh))
+        beside(path).write_bytes(writers[path.suffix.lower()](path, mesh, list(text.values())))
         if mesh.texture is not None and mesh.uv is not None:
-            Image.fromarray(mesh.texture).save(beside(picture), "PNG")
+            write_png(beside(picture), mesh.texture, text)
             if path.suffix.lower() == ".obj":
-                material = f"newmtl skin\nKd 1 1 1\nmap_Kd {picture.name}\n"
+                comments = "".join(f"# {line}\n" for line in text.values())
+                material = f"{comments}newmtl skin\nKd 1 1 1\nmap_Kd {picture.name}\n"
                 beside(path.with_suffix(".mtl")).write_text(material, encoding="utf-8")
 
 
@@ -110,21 +114,22 @@ def _add_texture(path: Path, content: MeshContent) -> list[MeshPart]:
     return [part._replace(texture=texture) for part in parts]
 
 
-def _format_obj(path: Path, mesh: Mesh) -> bytes:
+def _format_obj(path: Path, mesh: Mesh, comments: list[str]) -> bytes:
+    head = [f"# {line}" for line in comments]
     lines = [f"v {x:.9g} {y:.9g} {z:.9g}" for x, y, z in mesh.vertices.tolist()]
     corners = (mesh.triangles + 1).tolist()
     if mesh.uv is None or mesh.uv_triangles is None:
         lines += [f"f {a} {b} {c}" for a, b, c in corners]
-        return ("\n".join(lines) + "\n").encode()
+        return ("\n".join(head + lines) + "\n").encode()
     if mesh.texture is not None:
         lines = [f"mtllib {path.with_suffix('.mtl').name}", *lines, "usemtl skin"]
     lines += [f"vt {u:.9g} {v:.9g}" for u, v in mesh.uv.tolist()]
     pairs = zip(corners, (mesh.uv_triangles + 1).tolist(), strict=True)
     lines += [f"f {a}/{i} {b}/{j} {c}/{k}" for (a, b, c), (i, j, k) in pairs]
-    return ("\n".join(lines) + "\n").encode()
+    return ("\n".join(head + lines) + "\n").encode()
 
 
-def _format_ply(path: Path, mesh: Mesh) -> bytes:
+def _format_ply(path: Path, mesh: Mesh, comments: list[str]) -> bytes:
     """Format as binary PLY, with texture coordinates of face corners in MeshLab's layout."""
     face: list[tuple[str, str, tuple[int, ...]]]
     face = [("count", "u1", ()), ("corners", "<i4", (3,))]
@@ -132,6 +137,7 @@ def _format_ply(path: Path, mesh: Mesh) -> bytes:
     header = [
         "ply",
         "format binary_little_endian 1.0",
+        *(f"comment {line}" for line in comments),
         *([f"comment TextureFile {path.with_suffix('.png').name}"] * textured),
         f"element vertex {len(mesh.vertices)}",
         *(f"property double {axis}" for axis in "xyz"),

@@ -16,10 +16,17 @@ from skinnet.appearance.measures import Measures, measure
 from skinnet.appearance.stack import SubjectStack
 from skinnet.errors import InputError
 from skinnet.pipeline._model_inputs import find_maps, read_mask, read_shape, stack_subjects
-from skinnet.pipeline._model_results import describe_measures, make_renderer, write_models
+from skinnet.pipeline._model_results import (
+    JOINT,
+    MODEL_FILES,
+    describe_measures,
+    make_renderer,
+    write_models,
+)
 from skinnet.pipeline._output import add_output, make_output_folder
 from skinnet.pipeline._progress import log
 from skinnet.pipeline._scans import OUTPUT, ScanOptions
+from skinnet.pipeline._source import Source, choose_folder
 
 MODEL_FOLDER = Path("skinmodel")
 
@@ -76,8 +83,11 @@ def add_arguments(parser: ArgumentParser) -> None:
 
 def run(config: Namespace) -> int:
     """Write hybrid.npz, linear.npz, joint.npz if asked for, and their measures and figures."""
-    output = make_output_folder(config.output or MODEL_FOLDER)
     files = find_maps(config.maps or [Path(OUTPUT)])
+    source = Source.read(files)
+    names = MODEL_FILES if config.joint else [name for name in MODEL_FILES if name != JOINT]
+    folder = choose_folder(config.output, MODEL_FOLDER, names, source)
+    output = make_output_folder(folder)
     stack = stack_subjects(files, output / "stack")
     mask = _choose_texels(stack, config.model)
     hybrid, linear = _fit_models(stack, mask, config.model)
@@ -87,7 +97,7 @@ def run(config: Namespace) -> int:
         options = ScanOptions(config.shape, config.shape_landmarks)
         joint, joint_measures = _fit_joint(files, stack, hybrid, options, config.model)
         measures.append(joint_measures)
-    write_models(output, hybrid, linear, joint, measures, make_renderer(files))
+    write_models(output, hybrid, linear, joint, measures, make_renderer(files), source)
     shutil.rmtree(stack.folder)
     print(f"{output}: {len(files)} subjects; {describe_measures(measures)}", flush=True)
     return 0

@@ -1,5 +1,6 @@
 """`skinnet edit-maps`: scale, add to or paint pigments, and render the face again."""
 
+from collections.abc import Mapping
 from pathlib import Path
 
 import numpy as np
@@ -11,6 +12,7 @@ from skinnet.appearance.colour import SkinColour
 from skinnet.appearance.edit import PigmentEdit, edit_texture
 from skinnet.appearance.maps_file import load_maps, save_maps
 from skinnet.appearance.skin_texture import SkinTexture
+from skinnet.images._result_names import choose_stem
 from skinnet.images.photograph import read_photo, write_png
 from skinnet.inference.panel import draw_grid, draw_picture
 from skinnet.mesh.mesh_file import read_mesh, write_mesh
@@ -21,8 +23,15 @@ from skinnet.pipeline._maps_writer import (
     fill_albedo,
     show_albedo,
 )
-from skinnet.pipeline._output import MAPS_END, add_end, add_output, make_output_folder
+from skinnet.pipeline._output import (
+    EDIT_ENDS,
+    MAPS_END,
+    add_end,
+    add_output,
+    make_output_folder,
+)
 from skinnet.pipeline._progress import log
+from skinnet.pipeline._source import Source
 from skinnet.pipeline.relight import RelightSettings
 from skinnet.render.scene import Scene
 
@@ -34,6 +43,7 @@ RENAMED = {
 }
 """Flags and keys of earlier versions, and their new names; YAML errors give keys without group."""
 
+_VERB = "edit-maps"
 _PIGMENTS = ("melanin", "hemoglobin")
 
 
@@ -70,20 +80,25 @@ def run(config: Namespace) -> int:
     )
     after = edit_texture(before, colour, melanin, hemoglobin, _read_mask(config.mask))
     name = config.maps.name.removesuffix(MAPS_END).removesuffix(".npz")
-    stem = make_output_folder(config.output or config.maps.parent) / f"{name}_edited"
-    save_maps(add_end(stem, MAPS_END), after, colour)
-    write_png(add_end(stem, "_albedo.png"), show_albedo(after.albedo(colour), after))
+    source = Source.read([config.maps])
+    folder = make_output_folder(config.output or config.maps.parent)
+    stem = folder / choose_stem(folder, f"{name}_edited", EDIT_ENDS, source.owns)
+    text = source.make_mark(_VERB, "edited-maps").to_text()
+    save_maps(add_end(stem, MAPS_END), after, colour, source.describe(_VERB, "maps", folder))
+    write_png(add_end(stem, "_albedo.png"), show_albedo(after.albedo(colour), after), text)
     rows = _draw_rows(before, after, colour)
     mesh = config.maps.with_name(f"{name}_face.obj")
     if mesh.is_file():
         for row, rendered in zip(
-            rows, _write_faces(mesh, stem, (before, after), colour, config.relight), strict=True
+            rows,
+            _write_faces(mesh, stem, (before, after), colour, config.relight, text),
+            strict=True,
         ):
             row.append(rendered)
     else:
         log(f"There is no {mesh} to render on; the albedo alone is written.")
     panel = draw_grid([tile for row in rows for tile in row], len(rows[0]))
-    write_png(add_end(stem, "_panel.png"), panel)
+    write_png(add_end(stem, "_panel.png"), panel, text)
     print(f"{config.maps}: {stem}_maps.npz, _albedo.png, _panel.png", flush=True)
     return 0
 
@@ -110,14 +125,14 @@ def _write_faces(
     textures: tuple[SkinTexture, SkinTexture],
     colour: SkinColour,
     relight: RelightSettings,
+    text: Mapping[str, str],
 ) -> list[Image.Image]:
     """Write the edited face as a mesh and as a picture; draw tiles of it before and after."""
     face, after = read_mesh(mesh), textures[1]
     albedos = [fill_albedo(one.albedo(colour), one) for one in textures]
     scene = Scene(face)
     pictures = [relight.render(scene, albedo) for albedo in albedos]
-    write_png(add_end(stem, "_render.png"), pictures[1])
-    write_mesh(
-        add_end(stem, "_face.obj"), add_texture(face, show_albedo(after.albedo(colour), after))
-    )
+    write_png(add_end(stem, "_render.png"), pictures[1], text)
+    textured = add_texture(face, show_albedo(after.albedo(colour), after))
+    write_mesh(add_end(stem, "_face.obj"), textured, text)
     return [draw_picture("relit", picture) for picture in pictures]

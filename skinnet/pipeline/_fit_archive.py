@@ -1,8 +1,10 @@
 """The archive of a fitted shape: NAME_shape.npz."""
 
 import json
+from collections.abc import Mapping
 from dataclasses import asdict
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 
@@ -16,8 +18,8 @@ from skinnet.shape.similarity import Similarity
 _ARRAYS = ("alpha", "vertices", "distances", "kept")
 
 
-def save_fit(path: Path, fit: Registration) -> None:
-    """Write a fit to a .npz file of plain arrays, all of it or nothing."""
+def save_fit(path: Path, fit: Registration, origin: Mapping[str, Any]) -> None:
+    """Write a fit and its origin to a .npz file of plain arrays, all of it or nothing."""
     stages = json.dumps([asdict(stage) for stage in fit.record])
     arrays = {name: getattr(fit, name) for name in _ARRAYS}
     with write_atomically(path) as part:
@@ -28,6 +30,7 @@ def save_fit(path: Path, fit: Registration) -> None:
             translation=fit.pose.translation,
             millimetres=np.float64(fit.millimetres),
             stages=np.array(stages),
+            origin=np.array(json.dumps(origin)),
             **arrays,
         )
 

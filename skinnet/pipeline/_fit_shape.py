@@ -24,6 +24,7 @@ from skinnet.pipeline._scans import (
     make_output_stem,
     process_scans,
 )
+from skinnet.pipeline._source import Source
 from skinnet.pipeline.initial_pose import find_initial_pose
 from skinnet.shape.fit_settings import FitSettings
 from skinnet.shape.model import ShapeModel
@@ -35,6 +36,7 @@ _NO_FACE_MM = 10.0
 _UNLIKELY_SHAPE = 2.0
 """RMS of the coefficients, in standard deviations, above which a fit is doubtful."""
 
+_VERB = "fit-shape"
 _ENDS = ("_shape.npz", "_shape.obj", "_shape.png", "_shape.json")
 
 
@@ -43,6 +45,7 @@ class FittedScan:
     """A scan, the shape fitted to it, and FOLDER/NAME with which the names of its files begin."""
 
     scan: Scan
+    source: Source
     fit: Registration
     stem: Path
     fingerprint: str
@@ -81,28 +84,31 @@ def fit_scan(
 ) -> FittedScan:
     """Fit a shape model to one scan, or read the earlier fit of these inputs."""
     scan = load_scan(path, model, options, textured)
-    stem = make_output_stem(path, output)
+    source = Source.read([path])
+    stem = make_output_stem(source, output)
     marks = {} if scan.landmarks is None else scan.landmarks
     points = {name: point.tolist() for name, point in marks.items()}
     fingerprint = compute_fingerprint(path, options.model or "default", points, settings)
     archive, mesh, picture, record = (add_end(stem, end) for end in _ENDS)
     if read_finished(record, fingerprint, [archive, mesh, picture]) is not None:
         log(f"{archive} is there already and is kept.")
-        return FittedScan(scan, load_fit(archive), stem, fingerprint)
+        return FittedScan(scan, source, load_fit(archive), stem, fingerprint)
     start = find_initial_pose(model, scan.mesh) if scan.landmarks is None else None
     fit = register(model, scan.mesh, scan.landmarks, settings, log, start)
     _check_fit(fit, scan, model)
-    fitted = FittedScan(scan, fit, stem, fingerprint)
+    fitted = FittedScan(scan, source, fit, stem, fingerprint)
     summary = summarise_fit(fitted, model)
     if summary["rms_deviations"] > _UNLIKELY_SHAPE:
         log(
             f"{scan.path}: the fitted shape is unlikely under {model.name}; look at {picture}, and "
             "give a model of real faces with --model."
         )
-    save_fit(archive, fit)
-    write_mesh(mesh, fitted.mesh(model))
-    write_png(picture, draw_fit(scan.mesh, fitted.mesh(model), fit))
-    write_record(record, fingerprint, summary)
+    text = source.make_mark(_VERB, "shape").to_text()
+    origin = source.describe(_VERB, "shape", stem.parent)
+    save_fit(archive, fit, origin)
+    write_mesh(mesh, fitted.mesh(model), text)
+    write_png(picture, draw_fit(scan.mesh, fitted.mesh(model), fit), text)
+    write_record(record, fingerprint, origin | summary)
     return fitted
 
 

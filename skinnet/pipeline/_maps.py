@@ -87,9 +87,10 @@ def write_scan_maps(
         log(f"{files[0]} is there already and is kept.")
         return
     texture, off_manifold = invert_texture(scan.warped, exposure, colours, str(path))
-    write_maps(stem, texture, colours.colour, scan.fitted.mesh(model))
+    source = scan.fitted.source
+    write_maps(stem, texture, colours.colour, scan.fitted.mesh(model), source)
     summary = summarise_maps(scan, texture, off_manifold, exposure, colours)
-    write_record(record, fingerprint, summary)
+    write_record(record, fingerprint, source.describe("maps", "summary", stem.parent) | summary)
     if off_manifold > _DOUBTFUL_SHARE:
         log(
             f"{path}: {off_manifold:.0%} of the texels have a colour that skin cannot have, so "

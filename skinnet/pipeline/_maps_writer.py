@@ -1,6 +1,6 @@
 """Writer of one person's maps: numbers, pictures, a textured mesh and a panel."""
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 
 import numpy as np
@@ -18,6 +18,7 @@ from skinnet.mesh.mesh import Mesh
 from skinnet.mesh.mesh_file import write_mesh
 from skinnet.pipeline import relight
 from skinnet.pipeline._output import MAPS_END, add_end
+from skinnet.pipeline._source import Source
 from skinnet.render.scene import Scene
 
 _FLUSH, _TAN = 2.0, 1.5
@@ -33,16 +34,19 @@ MAPS_ENDS = (MAPS_END, "_melanin.png", "_hemoglobin.png", "_face.obj", "_panel.p
 """Ends of the names of the files that `write_maps` writes."""
 
 
-def write_maps(stem: Path, texture: SkinTexture, colour: SkinColour, face: Mesh) -> list[Path]:
+def write_maps(
+    stem: Path, texture: SkinTexture, colour: SkinColour, face: Mesh, source: Source
+) -> list[Path]:
     """Write NAME_maps.npz, NAME_melanin.png, NAME_hemoglobin.png, NAME_face.obj and a panel."""
+    marks = {part: source.make_mark("maps", part).to_text() for part in ("map", "face", "panel")}
     files = [add_end(stem, end) for end in MAPS_ENDS]
     maps, melanin, hemoglobin, mesh, panel = files
-    save_maps(maps, texture, colour)
-    write_fraction(melanin, texture, "f_mel")
-    write_fraction(hemoglobin, texture, "f_blood")
+    save_maps(maps, texture, colour, source.describe("maps", "maps", stem.parent))
+    write_fraction(melanin, texture, "f_mel", marks["map"])
+    write_fraction(hemoglobin, texture, "f_blood", marks["map"])
     albedo = texture.albedo(colour)
-    write_mesh(mesh, add_texture(face, show_albedo(albedo, texture)))
-    write_png(panel, draw_maps_panel(texture, colour, face))
+    write_mesh(mesh, add_texture(face, show_albedo(albedo, texture)), marks["face"])
+    write_png(panel, draw_maps_panel(texture, colour, face), marks["panel"])
     return files
 
 
@@ -51,13 +55,13 @@ def add_texture(face: Mesh, texture: UInt8[np.ndarray, "h w 3"]) -> Mesh:
     return Mesh(face.vertices, face.triangles, face.uv, face.uv_triangles, texture, face.name)
 
 
-def write_fraction(path: Path, texture: SkinTexture, name: str) -> None:
+def write_fraction(path: Path, texture: SkinTexture, name: str, text: Mapping[str, str]) -> None:
     """Write a map to a 16-bit PNG with fraction = scale * pixel; a text chunk holds the scale."""
     values = np.where(texture.mask, getattr(texture, name), 0)
     scale = float(values.max()) / _LEVELS or 1.0
     pixels = np.rint(values / scale).astype(np.uint16)
     note = {"map": name, "scale": repr(scale), "offset": "0.0", "unit": "volume fraction"}
-    write_png(path, pixels, note)
+    write_png(path, pixels, note | dict(text))
 
 
 def show_albedo(

@@ -1,6 +1,6 @@
 """Figures of appearance models, like Figures 7 and 8 of Alotaibi & Smith 2017."""
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from functools import partial
 from pathlib import Path
 
@@ -28,10 +28,12 @@ AlbedoRenderer = Callable[[Float32[np.ndarray, "size size 3"]], UInt8[np.ndarray
 Line = tuple[Int[np.ndarray, "counts"], Float[np.ndarray, "counts"]]
 
 
-def plot_measures(path: Path, measures: Sequence[Measures]) -> None:
+def plot_measures(
+    path: Path, measures: Sequence[Measures], text: Mapping[str, str] | None = None
+) -> None:
     """Plot compactness, generalisation and specificity of models to a PNG file.
 
-    For a joint model the measures of shape, in mm, are added.
+    For a joint model the measures of shape, in mm, are added. `text` goes into tEXt chunks.
 
     Source:
         Figure 8 of Alotaibi & Smith 2017.
@@ -52,7 +54,7 @@ def plot_measures(path: Path, measures: Sequence[Measures]) -> None:
     )[: 4 if shapes else 2]:
         _plot(axis, measures, partial(_mean_curve, field), title, label)
     with write_atomically(path) as part:
-        figure.savefig(part, format="png", dpi=110)
+        figure.savefig(part, format="png", dpi=110, metadata=dict(text or {}))
 
 
 def _own_compactness(measures: Measures) -> Line:

@@ -15,6 +15,7 @@ from skinnet.images.photograph import read_photo
 from skinnet.pipeline._fit_archive import load_fit
 from skinnet.pipeline._output import MAPS_END
 from skinnet.pipeline._progress import compute_fingerprint, log
+from skinnet.pipeline._source import read_result_mark
 
 
 def find_maps(places: list[Path]) -> list[Path]:
@@ -24,7 +25,7 @@ def find_maps(places: list[Path]) -> list[Path]:
         if not place.exists():
             raise InputError(f"There is no {place}; name *{MAPS_END} files or a folder of them.")
         inside = sorted(place.glob(f"*{MAPS_END}")) if place.is_dir() else [place]
-        inside = [file for file in inside if not place.is_dir() or not _is_edited(file)]
+        inside = [file for file in inside if not place.is_dir() or not _is_made_up(file)]
         if not inside:
             raise InputError(
                 f"The folder {place} holds no *{MAPS_END}; make them with skinnet maps."
@@ -38,12 +39,14 @@ def find_maps(places: list[Path]) -> list[Path]:
     return files
 
 
-def _is_edited(file: Path) -> bool:
-    """Tell whether maps were made by edit-maps; an edited face is not another subject."""
-    edited = file.name.endswith(f"_edited{MAPS_END}")
-    if edited:
-        log(f"{file} is an edited face and is left out.")
-    return edited
+def _is_made_up(file: Path) -> bool:
+    """Tell whether maps were made by edit-maps or sample; such a face is not another subject."""
+    mark = read_result_mark(file)
+    verb = mark.verb if mark else ""
+    edited = verb == "edit-maps" or file.name.endswith(f"_edited{MAPS_END}")
+    if edited or verb == "sample":
+        log(f"{file} is {'an edited' if edited else 'a random'} face and is left out.")
+    return edited or verb == "sample"
 
 
 def stack_subjects(files: list[Path], folder: Path) -> SubjectStack:

@@ -19,7 +19,17 @@ from skinnet.pipeline import relight
 from skinnet.pipeline._fit_archive import load_fit
 from skinnet.pipeline._model_figures import AlbedoRenderer, draw_hybrid, draw_linear, plot_measures
 from skinnet.pipeline._output import MAPS_END, add_end
+from skinnet.pipeline._source import Source
 from skinnet.render.scene import Scene
+
+_VERB = "build-model"
+
+JOINT = "joint.npz"
+MODEL_FILES = (
+    *("hybrid.npz", "linear.npz", JOINT, "measures.json"),
+    *("measures.png", "components_hybrid.png", "components_linear.png"),
+)
+"""Names of all files that build-model writes."""
 
 
 def make_renderer(files: list[Path]) -> AlbedoRenderer | None:
@@ -45,6 +55,7 @@ def write_models(
     joint: JointModel | None,
     measures: list[Measures],
     renderer: AlbedoRenderer | None,
+    source: Source,
 ) -> None:
     """Write models, their measures, and figures like Figures 7 and 8 of the paper."""
     components = min(3, *(len(model.statistics.variances) for model in (hybrid, linear)))
@@ -52,14 +63,17 @@ def write_models(
         "hybrid": draw_hybrid(hybrid, components=components, renderer=renderer),
         "linear": draw_linear(linear, components=components, renderer=renderer),
     }
-    hybrid.save(output / "hybrid.npz")
-    linear.save(output / "linear.npz")
+    origin = source.describe(_VERB, "model", output)
+    text = source.make_mark(_VERB, "figure").to_text()
+    hybrid.save(output / "hybrid.npz", origin)
+    linear.save(output / "linear.npz", origin)
     if joint is not None:
-        joint.save(output / "joint.npz")
-    plot_measures(output / "measures.png", measures)
+        joint.save(output / JOINT, origin)
+    plot_measures(output / "measures.png", measures, text)
     for name, picture in pictures.items():
-        write_png(output / f"components_{name}.png", picture)
+        write_png(output / f"components_{name}.png", picture, text)
     record: dict[str, Any] = {
+        **origin,
         "subjects": hybrid.statistics.subjects,
         "texels": int(hybrid.mask.sum()),
         "measures": {one.name: one.summary() for one in measures},

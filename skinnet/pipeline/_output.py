@@ -9,6 +9,16 @@ from skinnet.files import make_folder
 MAPS_END = "_maps.npz"
 """End of the name of a file of maps."""
 
+_FACE_ENDS = ("_face.obj", "_face.mtl", "_face.png")
+_SHAPE_ENDS = ("_shape.npz", "_shape.obj", "_shape.png", "_shape.json")
+_PIGMENT_ENDS = (MAPS_END, "_maps.json", "_melanin.png", "_hemoglobin.png", "_panel.png")
+
+SCAN_ENDS = (*_SHAPE_ENDS, "_warp.npz", "_warp.json", *_PIGMENT_ENDS, *_FACE_ENDS)
+"""Ends of the names of all files that the commands write for one scan."""
+
+EDIT_ENDS = (MAPS_END, "_albedo.png", "_panel.png", "_render.png", *_FACE_ENDS)
+"""Ends of the names of all files that edit-maps writes."""
+
 
 def make_output_folder(folder: Path) -> Path:
     """Make the folder that a verb writes into, if needed."""

@@ -14,7 +14,10 @@ from skinnet.images.photograph import write_png
 from skinnet.inference.panel import draw_grid, draw_picture
 from skinnet.pipeline._build_model import MODEL_FOLDER
 from skinnet.pipeline._maps_writer import choose_scale_ends, draw_pigments, show_albedo
-from skinnet.pipeline._output import MAPS_END, add_end, add_output, make_output_folder
+from skinnet.pipeline._output import MAPS_END, add_output, make_output_folder
+from skinnet.pipeline._source import Source, choose_folder
+
+_VERB = "sample"
 
 
 def add_arguments(parser: ArgumentParser) -> None:
@@ -40,15 +43,20 @@ def run(config: Namespace) -> int:
     if not 0 <= config.spread <= 10:
         raise InputError(f"spread is a number of deviations in [0, 10]; got {config.spread}.")
     model = HybridModel.load(config.model)
-    output = make_output_folder(config.output or config.model.parent / "samples")
+    source = Source.read([config.model])
+    stems = [f"sample_{number:02}" for number in range(config.count)]
+    names = [f"{stem}{end}" for stem in stems for end in (MAPS_END, "_albedo.png")]
+    default = config.model.parent / "samples"
+    folder = choose_folder(config.output, default, [*names, "samples.png"], source)
+    output = make_output_folder(folder)
+    origin, text = source.describe(_VERB, "maps", output), source.make_mark(_VERB, "skin").to_text()
     betas = config.spread * model.sample(config.count, config.seed)
     textures = [model.texture(beta, f"sample {i:02}") for i, beta in enumerate(betas)]
     albedos = [show_albedo(texture.albedo(model.colour), texture) for texture in textures]
-    for number, (texture, albedo) in enumerate(zip(textures, albedos, strict=True)):
-        stem = output / f"sample_{number:02}"
-        save_maps(add_end(stem, MAPS_END), texture, model.colour)
-        write_png(add_end(stem, "_albedo.png"), albedo)
-    write_png(output / "samples.png", _draw_samples(textures, albedos))
+    for stem, texture, albedo in zip(stems, textures, albedos, strict=True):
+        save_maps(output / f"{stem}{MAPS_END}", texture, model.colour, origin)
+        write_png(output / f"{stem}_albedo.png", albedo, text)
+    write_png(output / "samples.png", _draw_samples(textures, albedos), text)
     print(
         f"{output}: {config.count} faces, {model.measure_clamping(betas):.2%} of their texels "
         "clipped to a fraction in [0, 1]; sample_*_maps.npz, sample_*_albedo.png, samples.png",

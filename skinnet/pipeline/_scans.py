@@ -1,5 +1,7 @@
 """Scans: their files, options, repairs and landmarks."""
 
+import glob
+import os
 from collections.abc import Callable
 from dataclasses import dataclass, fields
 from pathlib import Path
@@ -9,11 +11,13 @@ from jaxtyping import Float
 from jsonargparse import ArgumentParser, Namespace
 
 from skinnet.errors import InputError
+from skinnet.images._result_names import choose_stem
 from skinnet.mesh.mesh import Mesh
 from skinnet.mesh.mesh_file import read_mesh
 from skinnet.mesh.repair import repair_mesh
-from skinnet.pipeline._output import add_output, make_output_folder
+from skinnet.pipeline._output import SCAN_ENDS, add_output, make_output_folder
 from skinnet.pipeline._progress import log
+from skinnet.pipeline._source import Source, find_result_verb
 from skinnet.shape.landmarks import check_landmarks, read_landmarks
 from skinnet.shape.model import ShapeModel
 from skinnet.shape.model_formats import load_shape_model
@@ -63,8 +67,13 @@ def load_scan(path: Path, model: ShapeModel, options: ScanOptions, textured: boo
     """Read, check and repair a scan. Its landmarks are those given, those beside it, or none.
 
     Raises:
-        InputError: If the scan cannot be read or repaired, or its landmarks are wrong.
+        InputError: If the scan cannot be read or repaired, is a result, or its landmarks are wrong.
     """
+    if (verb := find_result_verb(path)) is not None:
+        raise InputError(
+            f"{path} is a result of skinnet {verb}, not a scan; give the scan that it was made "
+            "from."
+        )
     mesh = read_mesh(path, options.texture)
     marks = options.landmarks or next(
         (file for file in _list_landmark_files(path) if file.is_file()), None
@@ -90,13 +99,14 @@ def process_scans(
         InputError: If one file of landmarks or one texture is given for several scans, or two scans
             would write the same files.
     """
+    paths = _expand_patterns(paths)
     for name, one in (("landmarks", options.landmarks), ("texture", options.texture)):
         if one is not None and len(paths) > 1:
             raise InputError(
                 f"{one} is one file of {name} for {len(paths)} scans; put each scan's own beside "
                 "it."
             )
-    names = [(output or path.parent, path.stem) for path in paths]
+    names = [(os.path.realpath(output or path.parent), path.stem.casefold()) for path in paths]
     twice = [path for path, name in zip(paths, names, strict=True) if names.count(name) > 1]
     if twice:
         raise InputError(
@@ -118,9 +128,26 @@ def _list_landmark_files(path: Path) -> list[Path]:
     return [path.with_name(path.stem + end) for end in _LANDMARK_ENDS]
 
 
-def make_output_stem(scan: Path, output: Path | None) -> Path:
-    """Make the output folder, and FOLDER/NAME with which the names of a scan's files begin."""
-    return make_output_folder(output or scan.parent / OUTPUT) / scan.stem
+def _expand_patterns(paths: list[Path]) -> list[Path]:
+    """Expand patterns such as *.obj that no shell has expanded."""
+    expanded: list[Path] = []
+    for path in paths:
+        pattern = not path.exists() and glob.has_magic(str(path))
+        found = sorted(map(Path, glob.glob(str(path)))) if pattern else [path]
+        if not found:
+            raise InputError(f"No file matches {path}; check the folder and the ending.")
+        expanded += found
+    return expanded
+
+
+def make_output_stem(source: Source, output: Path | None) -> Path:
+    """Make the output folder, and FOLDER/NAME with which the names of a scan's files begin.
+
+    NAME gets a number where another scan's results or a user's files have these names.
+    """
+    scan = source.paths[0]
+    folder = make_output_folder(output or scan.parent / OUTPUT)
+    return folder / choose_stem(folder, scan.stem, SCAN_ENDS, source.owns)
 
 
 def add_scan_arguments(parser: ArgumentParser) -> None:

@@ -1,5 +1,7 @@
 """The warp of a scan's texture into the model's texture space (section 4.2 of the paper)."""
 
+import json
+
 import numpy as np
 
 from skinnet.errors import InputError
@@ -36,8 +38,9 @@ def warp_scan(
             f"{fitted.scan.path}: no texel of the model lies within {settings.limit:g} mm of the "
             f"scan; look at {fitted.stem}_shape.png."
         )
+    origin = fitted.source.describe("maps", "warp", file.parent)
     with write_atomically(file) as part:
-        np.savez(part, image=warped.image, mask=warped.mask)
-    write_record(record, fingerprint, {"covered": float(covered)})
+        np.savez(part, image=warped.image, mask=warped.mask, origin=np.array(json.dumps(origin)))
+    write_record(record, fingerprint, origin | {"covered": float(covered)})
     log(f"{fitted.scan.path}: {covered:.0%} of the model's texels are covered by the scan.")
     return warped
