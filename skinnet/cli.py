@@ -290,13 +290,17 @@ def _read(found: "Found") -> tuple["Source", "Picture", tuple[str, ...]]:
 
 
 def _print(text: str) -> None:
-    """Print a line; characters that the output's encoding does not have become escapes."""
-    encoding = sys.stdout.encoding or "utf-8"
-    print(text.encode(encoding, "backslashreplace").decode(encoding), flush=True)
+    print(_escape(text, sys.stdout.encoding), flush=True)
 
 
 def _note(sentence: str) -> None:
-    print(f"skinnet: {sentence}", file=sys.stderr, flush=True)
+    print(_escape(f"skinnet: {sentence}", sys.stderr.encoding), file=sys.stderr, flush=True)
+
+
+def _escape(text: str, encoding: str | None) -> str:
+    """Replace characters that an encoding does not have by escapes."""
+    encoding = encoding or "utf-8"
+    return text.encode(encoding, "backslashreplace").decode(encoding)
 
 
 def _report(error: Exception) -> int:

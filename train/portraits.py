@@ -27,13 +27,13 @@ from skinnet.images import (
     srgb_to_linear,
     to_uint8,
 )
+from skinnet.images._walk import Found, Walk, walk
 from train.batch import Batch
 from train.guards import list_names
 from train.stream import StreamLoader, count_seen_samples
 from train.synthetic.faces import SyntheticFaces
 from train.synthetic.scene import SceneParameters
 
-SUFFIXES = (".jpg", ".jpeg", ".png", ".tif", ".tiff", ".webp")
 Share = restricted_number_type("Share", float, [(">=", 0), ("<", 1)])
 
 EXPOSURE_SD, WHITE_BALANCE_SD = 0.4, 0.03
@@ -92,7 +92,8 @@ def augment(crop: Crop, rng: np.random.Generator) -> Crop:
 class Portraits(LightningDataModule):
     """Photographs of faces, cropped and masked by `skinnet.images`.
 
-    Unreadable pictures and pictures without a face are skipped, counted, and listed in
+    What is a picture is decided by the content of a file. Unreadable pictures, pictures without a
+    face, results of skinnet and files of other kinds are skipped, counted, and listed in
     `skipped.csv` of the run. Every step also sees a batch of `synthetic` faces, so that the maps
     stay tied to known pigments. In training each photograph is shown twice in different exposure
     and white balance, so that a loss can compare what is read of both.
@@ -202,7 +203,7 @@ class Portraits(LightningDataModule):
 
 
 class Skipped(NamedTuple):
-    """A picture that training does not use, and the reason in words."""
+    """A file that training does not use, and the reason in words."""
 
     path: Path
     reason: str
@@ -214,20 +215,23 @@ def find_crops(
 ) -> tuple[list[Crop], list[Skipped]]:
     """Find the faces in the pictures of a folder, in the order of their names.
 
+    Files that are no photographs are skipped too, and stand at the end of those skipped.
+
     Args:
         folder: Searched with its subfolders.
         size: Side of the crops in pixels.
         unreadable_share: Share of the pictures that may be unreadable.
 
     Returns:
-        The crops, and the pictures that were skipped.
+        The crops, and the files that were skipped.
 
     Raises:
         InputError: If there is no folder or no picture in it, if more than `unreadable_share` of
             the pictures cannot be read, or if none shows a face.
     """
-    pictures = find_pictures(folder)
-    found = [_crop_face(path, size) for path in pictures]
+    walked = find_pictures(folder)
+    pictures = walked.pictures
+    found = [_crop_face(picture, size) for picture in pictures]
     crops = [each for each in found if isinstance(each, Crop)]
     skipped = [each for each in found if isinstance(each, Skipped)]
     unreadable = [str(each.path) for each in skipped if not each.readable]
@@ -237,34 +241,42 @@ def find_crops(
         raise InputError(
             f"{folder} holds no photograph with a face in it ({len(pictures)} pictures searched)."
         )
-    _report(folder, len(crops), unreadable, len(skipped) - len(unreadable))
-    return crops, skipped
+    _report(folder, len(crops), unreadable, len(skipped) - len(unreadable), walked)
+    return crops, skipped + [
+        Skipped(Path(path), f"It is {kind.one}; {kind.remedy}.", readable=True)
+        for path, kind in walked.passed_over
+    ]
 
 
-def find_pictures(folder: Path) -> list[Path]:
-    """List the pictures in a folder and its subfolders by name.
+def find_pictures(folder: Path) -> Walk:
+    """Find the pictures in a folder and its subfolders, by the walk of `skinnet predict`.
 
     Raises:
         InputError: If there is no folder or no picture in it.
     """
     if not folder.is_dir():
         raise InputError(f"{folder} is not a folder; give the folder of your photographs.")
-    pictures = sorted(path for path in folder.rglob("*") if path.suffix.lower() in SUFFIXES)
-    if not pictures:
-        raise InputError(
-            f"{folder} holds no photographs; those are files in {', '.join(SUFFIXES)}."
-        )
-    return pictures
+    found = walk([str(folder)], recursive=True)
+    for path, error, _ in found.pictures:
+        if error is not None and path == str(folder):
+            passed_over = found.describe_passed_over()
+            raise InputError(f"{error} Passed over: {passed_over}." if passed_over else str(error))
+    return found
 
 
 def write_skipped(skipped: list[Skipped], path: Path) -> None:
-    """Write a table of the pictures that were skipped; without any, only its header."""
+    """Write a table of the files that were skipped; without any, only its header."""
     text = io.StringIO()
     rows = csv.writer(text, lineterminator="\n")
     rows.writerow(("picture", "reason"))
     rows.writerows((each.path, each.reason) for each in skipped)
     path.parent.mkdir(parents=True, exist_ok=True)
-    write_text(path, text.getvalue())
+    write_text(path, _escape(text.getvalue()))
+
+
+def _escape(text: str) -> str:
+    """Replace what is not Unicode, in names of files, by escapes."""
+    return text.encode("utf-8", "backslashreplace").decode("utf-8")
 
 
 def _describe_unreadable(folder: Path, unreadable: list[str], pictures: int, allowed: float) -> str:
@@ -277,15 +289,22 @@ def _describe_unreadable(folder: Path, unreadable: list[str], pictures: int, all
 
 
 @rank_zero_only
-def _report(folder: Path, faces: int, unreadable: list[str], faceless: int) -> None:
+def _report(folder: Path, faces: int, unreadable: list[str], faceless: int, walked: Walk) -> None:
     summary = f"{folder}: {faces} faces, {len(unreadable) + faceless} pictures skipped"
     parts = [f"{faceless} without a face"] if faceless else []
     if unreadable:
         parts.append(f"{len(unreadable)} unreadable: {list_names(unreadable, 10)}")
-    print(f"{summary} ({'; '.join(parts)})" if parts else summary, file=sys.stderr)
+    lines = [f"{summary} ({'; '.join(parts)})" if parts else summary]
+    if walked.passed_over:
+        count = len(walked.passed_over)
+        lines.append(f"{folder}: {count} passed over: {walked.describe_passed_over()}")
+    print(_escape("\n".join(lines)), file=sys.stderr)
 
 
-def _crop_face(path: Path, size: int) -> Crop | Skipped:
+def _crop_face(found: Found, size: int) -> Crop | Skipped:
+    path = Path(found.path)
+    if found.error is not None:
+        return Skipped(path, str(found.error), readable=False)
     try:
         photo = read_photo(path)
     except InputError as error:

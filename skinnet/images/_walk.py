@@ -2,6 +2,7 @@
 
 import glob
 import os
+import re
 import stat
 from collections.abc import Sequence
 from dataclasses import dataclass, field
@@ -267,5 +268,5 @@ def _count(kind: Kind, names: list[str]) -> str:
     listed = ", ".join(names[:_MOST_NAMES])
     more = f" and {len(names) - _MOST_NAMES} more" if len(names) > _MOST_NAMES else ""
     remedy = f"; {kind.remedy}" if kind is HEIF else ""
-    name = kind.one.partition(" ")[2] if len(names) == 1 else kind.many
+    name = re.sub("^an? ?", "", kind.one) if len(names) == 1 else kind.many  # another: other
     return f"{len(names)} {name} ({listed}{more}{remedy})"

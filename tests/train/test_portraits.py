@@ -14,7 +14,8 @@ from skimage.data import astronaut
 from torch.utils.data import DataLoader
 
 from skinnet.errors import InputError
-from skinnet.images import srgb_to_linear
+from skinnet.images import srgb_to_linear, write_png
+from skinnet.images._mark import EDITED, PROCESSING_SOFTWARE, Mark
 from skinnet.network import read_checkpoint
 from train.callbacks import LastCheckpoint, PictureGrid
 from train.cli import main
@@ -26,6 +27,7 @@ from train.portraits import (
     Portraits,
     augment,
     find_crops,
+    write_skipped,
 )
 from train.synthetic.faces import SyntheticFaces
 from train.synthetic.head_cast import make_blank_cast
@@ -67,8 +69,40 @@ def test_more_unreadable_pictures_than_the_share_are_refused(tmp_path: Path) -> 
     assert len(find_crops(tmp_path, 32, unreadable_share=0.9)[1]) == 9
 
 
+def test_files_of_other_kinds_are_passed_over_and_listed(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    face = Image.fromarray(astronaut())
+    (tmp_path / "deep" / "skinmaps").mkdir(parents=True)
+    for name in ("a.jfif", "deep/b", "deep/c.JPG_large"):
+        face.save(tmp_path / name, "JPEG")
+    exif = Image.Exif()
+    exif[PROCESSING_SOFTWARE] = str(Mark("edit", EDITED))
+    face.save(tmp_path / "a_edited.jpg", exif=exif)
+    mark = Mark("predict", "reconstruction").to_text()
+    write_png(tmp_path / "deep" / "skinmaps" / "a_reconstruction.png", astronaut(), mark)
+    (tmp_path / "raw.nef").write_bytes(b"II*\0" + bytes(20))
+    (tmp_path / "\udcff.txt").write_text("odd")
+    (tmp_path / ".hidden.jpg").write_bytes(b"")
+    crops, skipped = find_crops(tmp_path, 32)
+    assert len(crops) == 3
+    write_skipped(skipped, tmp_path / "run" / "skipped.csv")
+    reasons = {
+        Path(row["picture"]).name: row["reason"] for row in rows(tmp_path / "run/skipped.csv")
+    }
+    assert reasons == {
+        "a_edited.jpg": "It is a result of skinnet; give the photograph itself.",
+        "a_reconstruction.png": "It is a result of skinnet; give the photograph itself.",
+        "raw.nef": "It is a RAW file; develop it, and save it as 16-bit TIFF or JPEG.",
+        "\\udcff.txt": "It is another file; give a JPEG, PNG, TIFF or WebP file.",
+    }
+    count = capsys.readouterr().err.splitlines()[-1]
+    assert "4 passed over: 2 results of skinnet (a_edited.jpg, a_reconstruction.png)" in count
+    assert "1 RAW file (raw.nef)" in count
+
+
 def test_a_folder_without_faces_is_refused(tmp_path: Path) -> None:
-    with pytest.raises(InputError, match=r"holds no photographs; those are files in .jpg"):
+    with pytest.raises(InputError, match=r"holds no photographs; they are JPEG, PNG"):
         find_crops(tmp_path, 32)
     with pytest.raises(InputError, match="not a folder"):
         find_crops(tmp_path / "absent", 32)
