@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 from PIL import Image
 
+from skinnet.images._encoding import encode_linear, is_invertible
 from skinnet.images._icc import (
     convert_pixels,
     make_linear_profile,
@@ -16,7 +17,7 @@ from skinnet.images._icc import (
     read_signature,
 )
 from skinnet.images.colour_space import ColourSpace
-from skinnet.images.srgb import linear_to_srgb, srgb_to_linear
+from skinnet.images.srgb import srgb_to_linear
 
 _SRGB = ColourSpace("sRGB", "assumed")
 
@@ -82,19 +83,33 @@ class Picture:
             changed: Which pixels to replace, [H, W].
 
         Returns:
-            A picture with the same colour space and depth. Grey pixels become RGB.
+            A picture with the same colour space and depth. Grey pixels become RGB, and so do those
+            of a profile that gives no way back.
         """
-        pixels, profile = self._expand()
-        dtype, top = pixels.dtype, np.iinfo(pixels.dtype).max
+        whole = self.as_colour()
+        old = whole.pixels[changed][None]
         wanted = np.asarray(linear, np.float32)[changed][None]
-        if profile is None:
-            values = np.rint(linear_to_srgb(wanted) * top).astype(dtype)
-        else:
-            values = convert_pixels(wanted, make_linear_profile(), profile, dtype)
-        edited = pixels.copy()
-        edited[changed] = values.reshape(-1, pixels.shape[2])
+        edited = whole.pixels.copy()
+        edited[changed] = encode_linear(wanted, old, whole.colour_space.profile)[0]
+        return replace(whole, pixels=edited)
+
+    def as_colour(self) -> "Picture":
+        """Return the picture with RGB or CMYK pixels, in a space that can be written.
+
+        Returns:
+            The picture itself, where it is so; grey pixels become RGB, and those of a profile that
+            gives no way back, such as a scanner's, become sRGB.
+        """
+        pixels, profile = self.pixels, self.colour_space.profile
+        if pixels.ndim == 3 and (profile is None or is_invertible(profile)):
+            return self
+        if pixels.ndim == 2:
+            pixels, profile = self._expand()
+        if profile is not None and not is_invertible(profile):
+            pixels = convert_pixels(pixels, profile, make_srgb_profile(), pixels.dtype)
+            profile = None
         space = self.colour_space if profile else ColourSpace("sRGB", self.colour_space.known_from)
-        return replace(self, pixels=edited, colour_space=space)
+        return replace(self, pixels=pixels, colour_space=space)
 
     def _to_srgb(self) -> NDArray[np.uint8]:
         pixels, profile = self._expand()
@@ -103,7 +118,7 @@ class Picture:
         return _to_eight_bits(pixels)
 
     def _expand(self) -> tuple[NDArray[Any], bytes | None]:
-        """RGB or CMYK pixels, and their profile; grey is converted to sRGB."""
+        """RGB or CMYK pixels, and their profile; others are converted to sRGB."""
         pixels, profile = self.pixels, self.colour_space.profile
         if pixels.ndim == 2 and profile is not None and read_signature(profile, 16) == "GRAY":
             return convert_pixels(pixels, profile, make_srgb_profile(), pixels.dtype), None

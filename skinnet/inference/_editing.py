@@ -1,14 +1,15 @@
 """A change of pigment as a change of colour, applied at the photograph's full size."""
 
-from typing import NamedTuple
+from dataclasses import replace
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
+from PIL import Image
 from scipy import ndimage
 
 from skinnet.images.box import Box
-from skinnet.images.resizing import resize
-from skinnet.images.srgb import linear_to_srgb, srgb_to_linear, to_uint8
+from skinnet.images.picture import Picture
 
 _RAMP_START, _RAMP_END = 0.25, 0.75
 """Masks between which changes set in; pixels below the first keep their exact values."""
@@ -18,6 +19,9 @@ _FADE = 0.08
 
 _RATIO_OFFSET = 1e-3
 """Linear sRGB added to both colours of a ratio, so that it stays finite at black."""
+
+_STRIP = 128
+"""Rows that are edited at once, which bounds the memory."""
 
 
 class ColourChange(NamedTuple):
@@ -64,31 +68,58 @@ def fade_edges(shape: tuple[int, ...], box: Box, photo: tuple[int, ...]) -> NDAr
 
 
 def apply_change(
-    crop: NDArray[np.uint8],
+    crop: Picture,
     change: ColourChange,
     specular: NDArray[np.float32],
     mask: NDArray[np.float32],
-) -> NDArray[np.uint8]:
-    """Change the diffuse reflection in uint8 sRGB [H, W, 3] by `change` [h, w].
+) -> None:
+    """Change the diffuse reflection in a picture [H, W] by `change` [h, w], in its own pixels.
 
     The diffuse reflection is max(photo - specular, 0) in linear sRGB. The change is weighed by
     `soften_mask`; `specular` and `mask` [h, w] have the size of `change`, and all three are
-    enlarged to that of the crop. Pixels of weight 0 keep their exact values.
+    enlarged to that of the crop. Pixels of weight 0, and transparent ones, keep their exact values.
     """
-    height, width = crop.shape[:2]
-    weight = soften_mask(resize(mask, width, height))
-    specular = resize(specular, width, height)
-    linear = srgb_to_linear(crop)
-    diffuse = np.maximum(linear - specular[..., None], 0)
-    total = diffuse.sum(-1)
-    edited = crop.copy()
-    for channel in range(3):
-        loss, gain = (
-            resize(np.ascontiguousarray(part[..., channel]), width, height) for part in change
-        )
-        changed = linear[..., channel] + weight * (loss * diffuse[..., channel] + gain * total)
-        edited[..., channel] = to_uint8(linear_to_srgb(changed))
-    return np.where(weight[..., None] == 0, crop, edited)
+    pixels = crop.pixels
+    planes = np.stack([*np.moveaxis(np.concatenate(change, -1), -1, 0), specular, mask])
+    height = pixels.shape[0]
+    for top in range(0, height, _STRIP):
+        rows = slice(top, min(top + _STRIP, height))
+        *parts, weight = (_enlarge(plane, pixels.shape[:2], rows) for plane in planes)
+        skin = soften_mask(weight)
+        if crop.alpha is not None:
+            skin[crop.alpha[rows] == 0] = 0
+        place = skin > 0
+        if place.any():
+            here = replace(crop, pixels=pixels[rows][place][None], alpha=None)
+            inside = [part[place] for part in (*parts, skin)]
+            pixels[rows][place] = _change_pixels(here, np.stack(inside[:6], -1), *inside[6:])
+
+
+def _change_pixels(
+    here: Picture,
+    change: NDArray[np.float32],
+    specular: NDArray[np.float32],
+    weight: NDArray[np.float32],
+) -> NDArray[Any]:
+    """Stored values [N, C] of the pixels [1, N, C] after their change [N, 6]."""
+    linear = here.linear()[0]
+    diffuse = np.maximum(linear - specular[:, None], 0)
+    added = change[:, :3] * diffuse + change[:, 3:] * diffuse.sum(-1, keepdims=True)
+    changed = (added != 0).any(-1)
+    edited = linear + weight[:, None] * added
+    values: NDArray[Any] = here.with_linear(edited[None], changed[None]).pixels[0]
+    return values
+
+
+def _enlarge(
+    plane: NDArray[np.float32], shape: tuple[int, ...], rows: slice
+) -> NDArray[np.float32]:
+    """Rows of a plane resized bilinearly to a shape."""
+    image, (height, width) = Image.fromarray(np.ascontiguousarray(plane)), shape[:2]
+    scale = image.height / height
+    box = (0, rows.start * scale, image.width, min(rows.stop * scale, image.height))
+    size = (width, rows.stop - rows.start)
+    return np.array(image.resize(size, Image.Resampling.BILINEAR, box=box))
 
 
 def _fade_axis(count: int, at_start: bool, at_end: bool) -> NDArray[np.float64]:

@@ -2,6 +2,7 @@
 
 import math
 from collections.abc import Mapping
+from dataclasses import replace
 from functools import cached_property
 from pathlib import Path
 from typing import Any
@@ -164,21 +165,56 @@ class Decomposer:
             >>> bool(edited[125, 224].mean() < astronaut()[125, 224].mean())  # the nose
             True
         """
-        for pigment, factor in (("melanin", melanin), ("hemoglobin", hemoglobin)):
-            if not (math.isfinite(factor) and 0 <= factor <= MAX_FACTOR):
-                raise InputError(
-                    f"{pigment} is multiplied by a number in [0, {MAX_FACTOR:g}]; got {factor:g}. "
-                    "1 leaves it as it is, 2 doubles it."
-                )
-        photo = _as_picture(image).srgb
-        box = _choose_box(photo, whole_image, name or _name_image(image))
-        crop = photo[box.slices]
-        encoder_outputs = self._encode(crop)
+        picture = _as_picture(image)
+        name = name or _name_image(image)
+        return self.edit_picture(picture, melanin, hemoglobin, whole_image, name).srgb
+
+    def edit_picture(
+        self,
+        picture: Picture,
+        melanin: float = 1.0,
+        hemoglobin: float = 1.0,
+        whole_image: bool = False,
+        name: str | None = None,
+    ) -> Picture:
+        """Multiply the pigments of a picture, which keeps its depth, colour space and alpha.
+
+        Args:
+            picture: A picture from `skinnet.images.read_picture`.
+            melanin: Factor of melanin in [0, 10].
+            hemoglobin: Factor of hemoglobin in [0, 10].
+            whole_image: Whether to edit the whole image, and not the square around the head of the
+                largest face.
+            name: Name of the picture in error messages; its own by default.
+
+        Returns:
+            The edited picture. Pixels that are not skin keep their stored values.
+
+        Raises:
+            InputError: A factor or a model file cannot be used.
+            NoFaceError: No face was found.
+
+        Example:
+            >>> from skimage.data import astronaut
+            >>> from skinnet.images import read_picture
+            >>> from skinnet.inference import Decomposer
+            >>> picture = read_picture(astronaut())
+            >>> edited = Decomposer().edit_picture(picture, melanin=2.0)
+            >>> bool((edited.pixels[0] == picture.pixels[0]).all())  # the wall
+            True
+        """
+        _check_factors(melanin=melanin, hemoglobin=hemoglobin)
+        photo = picture.srgb
+        box = _choose_box(photo, whole_image, name or picture.name)
+        encoder_outputs = self._encode(photo[box.slices])
         change = self._compute_change(encoder_outputs, melanin, hemoglobin)
         mask = encoder_outputs["mask"][0] * fade_edges(change.loss.shape[:2], box, photo.shape[:2])
-        edited = photo.copy()
-        edited[box.slices] = apply_change(crop, change, encoder_outputs["specular"][0], mask)
-        return edited
+        colour = picture.as_colour()
+        pixels = colour.pixels.copy()
+        alpha = None if colour.alpha is None else colour.alpha[box.slices]
+        crop = replace(colour, pixels=pixels[box.slices], alpha=alpha)
+        apply_change(crop, change, encoder_outputs["specular"][0], mask)
+        return replace(colour, pixels=pixels)
 
     def _encode(self, crop: NDArray[np.uint8]) -> dict[str, NDArray[np.float32]]:
         """Maps [1, h, w] and capture [1, ...] of a crop at the encoder's working size."""
@@ -227,6 +263,15 @@ class Decomposer:
             )
         named = dict(zip(self.encoder.lights, weights, strict=True))
         return named | {"temperature_k": float(encoder_outputs["temperature"][0])}
+
+
+def _check_factors(**factors: float) -> None:
+    for pigment, factor in factors.items():
+        if not (math.isfinite(factor) and 0 <= factor <= MAX_FACTOR):
+            raise InputError(
+                f"{pigment} is multiplied by a number in [0, {MAX_FACTOR:g}]; got {factor:g}. "
+                "1 leaves it as it is, 2 doubles it."
+            )
 
 
 def _choose_box(photo: NDArray[np.uint8], whole_image: bool, name: str) -> Box:
