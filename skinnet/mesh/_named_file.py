@@ -35,27 +35,28 @@ def _find_in_any_case(folder: Path, path: str) -> Path | None:
     named = Path(path)
     found = Path(named.anchor) if named.anchor else folder
     for part in named.parts[1:] if named.anchor else named.parts:
-        step = found / part
-        if part != ".." and not step.exists():
-            same = [each for each in _list(found) if _fold(each.name) == _fold(part)]
-            if len(same) != 1:
-                return None
-            step = same[0]
+        step = _match(found, part)
+        if step is None:
+            return None
         found = step
     return found if path and _exists(found) else None
 
 
-def _list(folder: Path) -> list[Path]:
+def _match(folder: Path, part: str) -> Path | None:
+    """Match one part of a path: as it is written, else the only one that differs in case."""
     try:
-        return list(folder.iterdir())
-    except OSError:
-        return []
+        if part == ".." or (folder / part).exists():
+            return folder / part
+        same = [each for each in folder.iterdir() if _fold(each.name) == _fold(part)]
+    except (OSError, ValueError):  # no folder, or a name that is too long or has a zero byte
+        return None
+    return same[0] if len(same) == 1 else None
 
 
 def _exists(path: Path) -> bool:
     try:
         return path.is_file()
-    except (OSError, ValueError):  # a name that is too long, or has a zero byte
+    except (OSError, ValueError):
         return False
 
 

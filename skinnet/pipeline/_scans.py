@@ -75,19 +75,22 @@ def load_scan(path: Path, model: ShapeModel, options: ScanOptions, textured: boo
             "from."
         )
     mesh = read_mesh(path, options.texture)
+    # Before the checks: what was assumed explains why one fails.
+    for note in mesh.notes:
+        log(note)
     marks = options.landmarks or next(
         (file for file in _list_landmark_files(path) if file.is_file()), None
     )
     points = None if marks is None else read_landmarks(marks, mesh)
     checked = repair_mesh(mesh, textured)
-    notes = [*mesh.notes, *checked.notes]
+    notes = list(checked.notes)
     if points is None:
         notes.append(f"{path} has no landmarks; its face is detected from the front.")
     else:
         check_landmarks(points, model, checked.mesh, str(marks))
     for note in notes:
         log(note)
-    return Scan(path, checked.mesh, points, tuple(notes))
+    return Scan(path, checked.mesh, points, (*mesh.notes, *notes))
 
 
 def process_scans(

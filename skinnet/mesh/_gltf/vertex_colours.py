@@ -11,6 +11,8 @@ from skinnet.mesh.raster import rasterise
 _TOLERANCE = 0.02
 """Largest difference of two colours, in [0, 1], that counts as rounding."""
 
+_SHRINK = 1e-6
+
 _AMBIGUOUS = 0.002
 """Largest share of texels whose triangles may have different colours, as at seams."""
 
@@ -29,9 +31,11 @@ def bake_colours(texture: Texture, corners: _Corners, colours: _Colours) -> Text
     size = max(height, width)
     square = corners * [width / size, height / size] * [1, -1] + [0, 1]
     first = _interpolate(square, colours, size)
-    last = _interpolate(square[::-1], colours[::-1], size)
+    # A little smaller, so that neighbours do not share the texels on their edges.
+    smaller = square + _SHRINK * (square.mean(1, keepdims=True) - square)
+    last = _interpolate(smaller[::-1], colours[::-1], size)
     drawn = np.isfinite(first).all(-1)
-    differing = np.abs(first - last)[drawn].max(-1, initial=0) > _TOLERANCE
+    differing = np.abs(first - last)[drawn].max(-1, initial=0) > _TOLERANCE  # false for NaN
     if not drawn.any() or differing.mean() > _AMBIGUOUS:
         return None
     nearest = distance_transform_edt(~drawn, return_distances=False, return_indices=True)
