@@ -1,5 +1,6 @@
 """Mesh files of every kind as parts."""
 
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -8,10 +9,14 @@ from skinnet.mesh._gltf.content import read_gltf
 from skinnet.mesh._mesh_parts import (
     MeshContent,
     check_mesh_file,
-    read_obj_positions,
+    concatenate,
     read_parts,
 )
+from skinnet.mesh._obj_content import read_obj_content
+from skinnet.mesh._seams import merge_coordinates, merge_vertices
+from skinnet.mesh._texture_atlas import pack_atlas
 from skinnet.mesh._texture_file import Texture
+from skinnet.mesh.mesh import Mesh
 
 _GLTF = (".glb", ".gltf")
 
@@ -30,9 +35,22 @@ def read_content(path: Path, given: Texture | None = None, textured: bool = True
     check_mesh_file(path)
     if path.suffix.lower() in _GLTF:
         return read_gltf(path, given, textured)
+    if path.suffix.lower() == ".obj":
+        return read_obj_content(path, given, textured)
     parts = read_parts(path)
     if given is not None:
         parts = [part._replace(texture=given) for part in parts]
-    listed = read_obj_positions(path) if path.suffix.lower() == ".obj" else np.zeros((0, 3))
     named = any(part.texture is not None for part in parts)
-    return MeshContent(parts, [], named, listed)
+    return MeshContent(parts, [], named, np.zeros((0, 3)))
+
+
+def join_parts(path: Path, content: MeshContent) -> Mesh:
+    """Join the parts of a file into one mesh with one texture."""
+    whole = concatenate([part.geometry for part in content.parts])
+    vertices, triangles = merge_vertices(whole, content.listed)
+    mesh = Mesh(vertices, triangles, name=str(path), notes=tuple(content.notes))
+    atlas = pack_atlas(content.parts)
+    if atlas is None:
+        return mesh
+    uv, uv_triangles = merge_coordinates(triangles, atlas.uv, atlas.triangles)
+    return replace(mesh, uv=uv, uv_triangles=uv_triangles, texture=atlas.texture)

@@ -78,19 +78,6 @@ def concatenate(geometries: list[MeshGeometry]) -> MeshGeometry:
     )
 
 
-def read_obj_positions(path: Path) -> Float[np.ndarray, "vertices 3"]:
-    """Read the `v` lines of an OBJ file in their order, which trimesh does not keep."""
-    with path.open("rb") as file:
-        lines = [line for line in file if line.startswith((b"v ", b"v\t"))]
-    if not lines:
-        return np.zeros((0, 3))
-    try:
-        positions: Float[np.ndarray, "vertices 3"] = np.loadtxt(lines, usecols=(1, 2, 3), ndmin=2)
-    except ValueError as error:
-        raise InputError(f"{path} has a damaged line among its vertices: {error}.") from error
-    return positions
-
-
 def check_mesh_file(path: Path) -> None:
     """Raise `InputError` if a file is missing, or its suffix is not one of `MESH_SUFFIXES`."""
     if not path.is_file():

@@ -1,7 +1,6 @@
 """Mesh files: OBJ, PLY, glTF and STL are read, OBJ and PLY are written."""
 
 from collections.abc import Mapping
-from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -9,11 +8,10 @@ import numpy as np
 from skinnet.errors import InputError
 from skinnet.files import write_together
 from skinnet.images.photograph import write_png
-from skinnet.mesh._content import read_content
-from skinnet.mesh._mesh_parts import MeshContent, MeshPart, concatenate
-from skinnet.mesh._seams import merge_coordinates, merge_vertices
-from skinnet.mesh._texture_atlas import pack_atlas
-from skinnet.mesh._texture_file import find_texture_beside, read_texture
+from skinnet.mesh._content import join_parts, read_content
+from skinnet.mesh._mesh_parts import MeshContent
+from skinnet.mesh._texture_beside import find_texture_beside
+from skinnet.mesh._texture_file import Texture, check_colour, describe_texture, open_texture
 from skinnet.mesh.mesh import Mesh
 
 
@@ -23,10 +21,12 @@ def read_mesh(path: Path, texture: Path | None = None) -> Mesh:
     Vertices at exactly the same position are merged, and those without a triangle are dropped; the
     order is that of the file. A vertex on a seam keeps its several texture coordinates.
 
-    The texture is `texture`, else what the materials name, else the picture in the mesh's folder
-    with the same name, else the only picture there. An EXIF orientation is not applied, since
-    texture coordinates refer to the stored rows and columns. If parts have different pictures,
-    these are placed side by side; a part without one gets its material's colour.
+    The texture is `texture`, else what the materials name. Where they name none it is the picture
+    in the mesh's folder with the mesh's name, or the only one there if its name says that it is
+    colour, such as albedo.jpg. An EXIF orientation is not applied, since texture coordinates refer
+    to the stored rows and columns. If parts have different pictures, these are placed side by side;
+    a part whose material names none gets the material's colour. What was assumed is in the mesh's
+    notes.
 
     Args:
         path: The mesh file.
@@ -36,7 +36,8 @@ def read_mesh(path: Path, texture: Path | None = None) -> Mesh:
         The mesh, named after the file.
 
     Raises:
-        InputError: For a file that is missing, of another kind, damaged, or without triangles.
+        InputError: For a file that is missing, of another kind, damaged, or without triangles, and
+            for a texture that a material names and that is missing or is no picture of colour.
 
     Example:
         >>> from pathlib import Path
@@ -49,16 +50,13 @@ def read_mesh(path: Path, texture: Path | None = None) -> Mesh:
         array([[0, 1, 2]])
     """
     path = Path(path)
-    given = None if texture is None else read_texture(Path(texture))
-    content = read_content(path, given)
-    whole = concatenate([part.geometry for part in content.parts])
-    vertices, triangles = merge_vertices(whole, content.listed)
-    atlas = pack_atlas(content.parts if given is not None else _add_texture(path, content))
-    mesh = Mesh(vertices, triangles, name=str(path), notes=tuple(content.notes))
-    if atlas is None:
-        return mesh
-    uv, uv_triangles = merge_coordinates(triangles, atlas.uv, atlas.triangles)
-    return replace(mesh, uv=uv, uv_triangles=uv_triangles, texture=atlas.texture)
+    if texture is None:
+        content = _add_texture(path, read_content(path))
+    else:
+        given, notes = _read_picture(Path(texture))
+        content = read_content(path, given)
+        content = content._replace(notes=[*content.notes, *notes])
+    return join_parts(path, content)
 
 
 def write_mesh(path: Path, mesh: Mesh, text: Mapping[str, str] | None = None) -> None:
@@ -104,14 +102,24 @@ def write_mesh(path: Path, mesh: Mesh, text: Mapping[str, str] | None = None) ->
                 beside(path.with_suffix(".mtl")).write_text(material, encoding="utf-8")
 
 
-def _add_texture(path: Path, content: MeshContent) -> list[MeshPart]:
+def _add_texture(path: Path, content: MeshContent) -> MeshContent:
     """Add the picture beside the mesh if the mesh names none."""
-    parts, beside = content.parts, find_texture_beside(path)
-    mapped = any(part.uv is not None for part in parts)
-    if content.names_pictures or beside is None or not mapped:
-        return parts
-    texture = read_texture(beside)
-    return [part._replace(texture=texture) for part in parts]
+    mapped = any(part.uv is not None for part in content.parts)
+    textured = any(part.texture is not None for part in content.parts)
+    if content.names_pictures or textured or not mapped:
+        return content
+    found, note = find_texture_beside(path)
+    if found is None:
+        return content._replace(notes=[*content.notes, note])
+    texture, notes = _read_picture(found)
+    parts = [part._replace(texture=texture) for part in content.parts]
+    return content._replace(parts=parts, notes=[*content.notes, note, *notes])
+
+
+def _read_picture(path: Path) -> tuple[Texture, list[str]]:
+    picture = open_texture(path)
+    check_colour(picture.srgb, str(path))
+    return picture.srgb, describe_texture(picture)
 
 
 def _format_obj(path: Path, mesh: Mesh, comments: list[str]) -> bytes:

@@ -14,9 +14,9 @@ import numpy as np
 from jaxtyping import Float
 
 from skinnet.errors import InputError
-from skinnet.mesh._mesh_parts import read_obj_positions
+from skinnet.mesh._content import join_parts, read_content
+from skinnet.mesh._obj import read_obj_positions
 from skinnet.mesh._seams import match_positions, merge_coordinates
-from skinnet.mesh.mesh_file import read_mesh
 from skinnet.shape._ibug import name_ibug_point
 from skinnet.shape.model import ShapeModel
 
@@ -62,7 +62,7 @@ def load_ict_folder(folder: Path, whole: bool = False) -> ShapeModel:
     vertex_indices.json, whose vertex numbers belong to the same release of the meshes. Raises
     `InputError` if there are no identities, or one has another number of vertices than `NEUTRAL`.
     """
-    neutral = read_mesh(folder / NEUTRAL)
+    neutral = join_parts(folder / NEUTRAL, read_content(folder / NEUTRAL, textured=False))
     listed = read_obj_positions(folder / NEUTRAL)
     files = sorted(folder.glob("identity[0-9][0-9][0-9].obj"))
     if not files:

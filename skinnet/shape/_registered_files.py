@@ -8,7 +8,8 @@ from jaxtyping import Float, Int
 
 from skinnet.errors import InputError
 from skinnet.mesh._content import read_content
-from skinnet.mesh._mesh_parts import MeshPart, concatenate, read_obj_positions
+from skinnet.mesh._mesh_parts import MeshPart, concatenate
+from skinnet.mesh._obj import read_obj_positions
 from skinnet.mesh._seams import match_positions, merge_coordinates
 from skinnet.mesh._texture_atlas import pack_atlas
 from skinnet.mesh._topology import weld

@@ -7,11 +7,11 @@ import pytest
 import trimesh
 
 from skinnet.errors import InputError
+from skinnet.mesh._content import read_content
 from skinnet.mesh._mesh_parts import (
     MESH_SUFFIXES,
     MeshGeometry,
     concatenate,
-    read_obj_positions,
     read_parts,
 )
 
@@ -23,7 +23,7 @@ def test_each_material_is_a_part_with_its_colour(tmp_path: Path) -> None:
         "usemtl a\nf 1/1 2/2 3/3\nusemtl b\nf 1 3 4\n"
     )
     (tmp_path / "two.mtl").write_text("newmtl a\nKd 1 0 0\nnewmtl b\nKd 0 0 1\n")
-    other, one = sorted(read_parts(path), key=lambda part: int(part.colour[0]))
+    other, one = sorted(read_content(path).parts, key=lambda part: int(part.colour[0]))
     assert one.uv is not None and other.uv is None
     assert one.texture is None and other.texture is None
     assert one.colour.tolist() == [255, 0, 0] and other.colour.tolist() == [0, 0, 255]
@@ -43,17 +43,6 @@ def test_concatenated_triangles_keep_their_vertices() -> None:
     both = concatenate([one, MeshGeometry(2 * np.eye(3), np.array([[2, 1, 0]]))])
     assert both.triangles.tolist() == [[0, 1, 2], [5, 4, 3]]
     assert np.array_equal(both.vertices, np.concatenate([np.eye(3), 2 * np.eye(3)]))
-
-
-def test_positions_of_an_obj_are_in_the_order_of_its_lines(tmp_path: Path) -> None:
-    path = tmp_path / "points.obj"
-    path.write_text("v 1 2 3\nvn 0 0 1\nvt 0 0\nv\t4 5 6 0.5 0.5 0.5\n")
-    assert read_obj_positions(path).tolist() == [[1, 2, 3], [4, 5, 6]]
-    path.write_text("# nothing\n")
-    assert read_obj_positions(path).shape == (0, 3)
-    path.write_text("v 1 2 x\n")
-    with pytest.raises(InputError, match=r"points\.obj has a damaged line"):
-        read_obj_positions(path)
 
 
 def test_another_kind_of_file_is_refused_with_the_kinds_that_are_read(tmp_path: Path) -> None:

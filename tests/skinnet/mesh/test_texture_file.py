@@ -8,7 +8,7 @@ from PIL import Image
 
 from skinnet.errors import InputError
 from skinnet.images import _decode
-from skinnet.mesh._texture_file import find_texture_beside, read_texture
+from skinnet.mesh._texture_file import read_texture
 
 
 def save(path: Path, size: tuple[int, int] = (4, 3)) -> Path:
@@ -49,14 +49,3 @@ def test_faults_are_named(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> No
     monkeypatch.setattr(_decode, "MAX_PIXELS", 100)
     with pytest.raises(InputError, match="64 x 64, more pixels than the limit of 100"):
         read_texture(path)
-
-
-def test_the_picture_beside_a_mesh_has_its_name_or_is_the_only_one(tmp_path: Path) -> None:
-    mesh = tmp_path / "head.obj"
-    assert find_texture_beside(mesh) is None
-    albedo = save(tmp_path / "albedo.png")
-    assert find_texture_beside(mesh) == albedo
-    save(tmp_path / "normals.png")
-    assert find_texture_beside(mesh) is None
-    named = save(tmp_path / "head.png")
-    assert find_texture_beside(mesh) == named
