@@ -91,8 +91,9 @@ def _is_result_of(file: Path, source: Source) -> bool:
         return False
     if mark.digest:
         return mark.digest == source.digest
-    summary = file.with_name(f"{file.stem.rpartition('_')[0]}.json")
-    return _is_summary_of(summary, source)
+    words = file.stem.split("_")
+    stems = ("_".join(words[:count]) for count in range(1, len(words)))
+    return any(_is_summary_of(file.with_name(f"{stem}.json"), source) for stem in stems)
 
 
 def _is_summary_of(file: Path, source: Source) -> bool:

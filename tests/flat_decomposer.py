@@ -1,0 +1,122 @@
+"""A decomposer without a network, whose melanin says which photograph was read; and its command."""
+
+import json
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+from PIL import Image
+
+from skinnet.cli import main
+from skinnet.errors import NoFaceError
+from skinnet.images import Box, write_png
+from skinnet.images.picture import Picture
+from skinnet.inference.decomposition import Decomposition
+from skinnet.inference.onnx_model import OutputInfo
+
+INFO = {
+    name: OutputInfo("fraction", (0.0, 1.0), name)
+    for name in ("melanin", "hemoglobin", "shading", "specular", "mask", "offset")
+}
+SKIN = (200, 140, 120)
+"""A colour that is read as melanin 0.200."""
+
+WALL = (255, 255, 255)
+"""A colour in which no face is found."""
+
+
+class FlatDecomposer:
+    """Reads a thousandth of the red of the first pixel as melanin; white has no face."""
+
+    def __init__(self, model: object = None) -> None:
+        pass
+
+    def load(self) -> None:
+        """Nothing is to be opened."""
+
+    def __call__(
+        self, picture: Picture, whole_image: bool, name: str, detail: bool
+    ) -> Decomposition:
+        photo = picture.srgb
+        height, width = photo.shape[:2]
+        if tuple(photo[0, 0]) == WALL:
+            raise NoFaceError(f"No face was found in {name}; try --whole-image.")
+        flat = np.full((height, width), photo[0, 0, 0] / 1000, np.float32)
+        return Decomposition(
+            *(flat, flat / 2, flat, flat, np.ones_like(flat), np.zeros((*flat.shape, 3), "f4")),
+            light={"D": 1.0},
+            camera={"components": [0.0]},
+            reconstruction=photo,
+            box=Box(0, 0, width, height),
+            output_info=INFO,
+            model={"version": "0"},
+            colour_space=picture.colour_space,
+            notes=picture.notes,
+        )
+
+    def edit(self, picture: Picture, *_: object) -> np.ndarray:
+        """The photograph as it is."""
+        return picture.srgb
+
+    def edit_picture(self, picture: Picture, *_: object, **__: object) -> Picture:
+        """The picture as it is."""
+        return picture
+
+
+@pytest.fixture
+def run(
+    monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> Callable[..., tuple[int, str, str]]:
+    """Runs the command without a network: its exit code, output and messages."""
+    monkeypatch.setattr("skinnet.inference.decomposer.Decomposer", FlatDecomposer)
+
+    def run(*arguments: object) -> tuple[int, str, str]:
+        code = main([str(argument) for argument in arguments])
+        return code, *capsys.readouterr()
+
+    return run
+
+
+def paint(colour: tuple[int, int, int] = SKIN) -> Image.Image:
+    """A picture that begins with a colour, and has other hues beside it."""
+    pixels = np.full((16, 32, 3), colour, np.uint8)
+    pixels[:, 16:24], pixels[:, 24:] = (60, 130, 70), (60, 80, 160)
+    return Image.fromarray(pixels)
+
+
+def save(
+    path: Path, colour: tuple[int, int, int] = SKIN, format_: str = "", **options: Any
+) -> Path:
+    """Write such a picture, in the format of its name or another."""
+    path.parent.mkdir(parents=True, exist_ok=True)
+    paint(colour).save(path, format_ or None, **options)
+    return path
+
+
+def read_melanin(folder: Path) -> dict[str, float]:
+    """Melanin of every summary in a folder, by its name."""
+    found = {}
+    for path in sorted(folder.glob("*.json")):
+        summary = json.loads(path.read_text())
+        found[path.name] = round(summary["maps"]["melanin"]["mean"], 3)
+    return found
+
+
+def names(folder: Path) -> list[str]:
+    return sorted(path.name for path in folder.iterdir())
+
+
+def strip_marks(folder: Path, keep: tuple[str, ...] = ("map", "scale", "offset", "unit")) -> None:
+    """Turn results into those of versions that had no marks."""
+    for path in folder.glob("*.png"):
+        with Image.open(path) as image:
+            text = {key: value for key, value in image.text.items() if key in keep}
+            array = np.array(image)
+        write_png(path, array, text)
+    for path in folder.glob("*.json"):
+        summary = json.loads(path.read_text())
+        for key in ("input", "notes", "colour_space"):
+            summary.pop(key, None)
+        path.write_text(json.dumps(summary))
