@@ -20,9 +20,9 @@ def main(arguments: Sequence[str] | None = None) -> int:
         "-o",
         "--output",
         type=Path,
-        default=Path("skin.onnx"),
         metavar="FILE",
-        help="the encoder's file; existing files are replaced; default: skin.onnx",
+        help="the encoder's file; by default skin.onnx. Files of another checkpoint are not "
+        "replaced",
     )
     parser.add_argument(
         "--half",
@@ -41,11 +41,13 @@ def main(arguments: Sequence[str] | None = None) -> int:
     return 0
 
 
-def _export(checkpoint: Path, output: Path, half: bool) -> None:
+def _export(checkpoint: Path, given: Path | None, half: bool) -> None:
     # Imported here, so that --help does not wait for torch.
     from export.onnx_file import SIZES, export_model
+    from export.outputs import DEFAULT, choose_output, describe_checkpoint
     from skinnet.network import SkinAutoencoder
 
+    output = given or DEFAULT
     if output.suffix != ".onnx":
         raise InputError(f"{output} does not end in .onnx; name the file that is to be written.")
     if output.is_dir():
@@ -57,7 +59,9 @@ def _export(checkpoint: Path, output: Path, half: bool) -> None:
             f"{checkpoint} would be overwritten, since weights are written beside {output}; give "
             "another name with -o."
         )
-    reports = export_model(SkinAutoencoder.from_pretrained(checkpoint), output, half)
+    output = choose_output(checkpoint, given)
+    model = SkinAutoencoder.from_pretrained(checkpoint)
+    reports = export_model(model, output, half, describe_checkpoint(checkpoint, output))
     sizes = ", ".join("x".join(map(str, size)) for size in SIZES)
     print(f"compared with torch at {sizes} (batch x height x width)")
     for report in reports:

@@ -48,13 +48,19 @@ class Report:
     milliseconds: float
 
 
-def export_model(model: SkinAutoencoder, path: Path, half: bool = False) -> list[Report]:
+def export_model(
+    model: SkinAutoencoder,
+    path: Path,
+    half: bool = False,
+    origin: str = "",
+) -> list[Report]:
     """Write the encoder to `path`, and the decoder and the weights beside it.
 
     Args:
         model: Model to export; its `trained_on` is written into the files.
         path: The encoder's .onnx file.
         half: Whether to round the encoder's weights to half precision; .safetensors stores them so.
+        origin: What the ONNX files state of their origin (`doc_string`).
 
     Returns:
         Measurements of encoder and decoder.
@@ -80,7 +86,7 @@ def export_model(model: SkinAutoencoder, path: Path, half: bool = False) -> list
         for kind, graph, inputs, outputs, target in jobs:
             part = temporary(target)
             _write(graph, inputs, outputs, part)
-            _describe(part, kind, model, outputs)
+            _describe(part, kind, model, outputs, origin)
             reports.append(_compare(model, part, target))
         if half:
             model.encoder.half()
@@ -124,7 +130,13 @@ def _silence_exporter() -> Iterator[None]:
         logger.setLevel(level)
 
 
-def _describe(path: Path, kind: str, model: SkinAutoencoder, outputs: dict[str, Output]) -> None:
+def _describe(
+    path: Path,
+    kind: str,
+    model: SkinAutoencoder,
+    outputs: dict[str, Output],
+    origin: str,
+) -> None:
     file = onnx.load(path)
     metadata = {
         "skinnet.kind": kind,
@@ -138,6 +150,7 @@ def _describe(path: Path, kind: str, model: SkinAutoencoder, outputs: dict[str, 
         "skinnet.license": LICENSE,
     }
     onnx.helper.set_model_props(file, metadata)
+    file.doc_string = origin
     try:
         finish(file)
     except (onnx.checker.ValidationError, onnx.shape_inference.InferenceError) as error:
