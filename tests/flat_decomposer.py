@@ -71,6 +71,7 @@ def run(
 ) -> Callable[..., tuple[int, str, str]]:
     """Runs the command without a network: its exit code, output and messages."""
     monkeypatch.setattr("skinnet.inference.decomposer.Decomposer", FlatDecomposer)
+    monkeypatch.setattr("skinnet.inference.results.draw_panel", lambda photo, _: photo)  # is slow
 
     def run(*arguments: object) -> tuple[int, str, str]:
         code = main([str(argument) for argument in arguments])

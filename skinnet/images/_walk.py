@@ -175,7 +175,7 @@ class _Walker:
             if not os.path.isdir(path):
                 self._add_found(path)
             elif "**" not in pattern:
-                self._add_folder(path)
+                self._add_folder(path, asked=False)
         if not matches:
             sentence = f"No file matches the pattern {pattern}; check the folder and the ending."
             self._fail(pattern, sentence)
@@ -183,8 +183,8 @@ class _Walker:
             sentence = f"No photograph matches the pattern {pattern}; {describe_formats()}."
             self._fail(pattern, sentence)
 
-    def _add_folder(self, source: str) -> None:
-        before = self._count()
+    def _add_folder(self, source: str, asked: bool = True) -> None:
+        before, passed_over = self._count(), len(self.found.passed_over)
         below: list[Path] = []
         self._search(Path(source), below)
         pictures, folders, complete = files.count_below(below)
@@ -194,12 +194,17 @@ class _Walker:
             if pictures:
                 note = f"{source} has further pictures, {where}; --recursive reads them too."
                 self.found.notes.append(note)
+        elif not asked or (not self.alone and self._has_results(passed_over)):
+            pass  # a pattern of the shell, *, has named skinmaps too
         elif pictures:
             sentence = f"holds no photographs itself, but {where}; --recursive reads them."
             self._fail(source, f"The folder {source} {sentence}")
         else:
             sentence = f"The folder {source} holds no photographs; {describe_formats()}."
             self._fail(source, sentence)
+
+    def _has_results(self, start: int) -> bool:
+        return any(kind is RESULT for _, kind in self.found.passed_over[start:])
 
     def _search(self, folder: Path, below: list[Path]) -> None:
         """Search a folder; without `recursive` its subfolders are only listed in `below`."""

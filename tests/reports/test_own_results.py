@@ -64,6 +64,20 @@ def test_results_that_a_pattern_matches_are_passed_over(
     assert read_melanin(tmp_path) == before
 
 
+@pytest.mark.parametrize("expanded", [True, False])
+def test_a_star_names_the_folder_of_results_too(
+    run: Run, tmp_path: Path, expanded: bool, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    save(tmp_path / "a.png")
+    for _ in range(2):
+        inputs = names(tmp_path) if expanded else ["*"]
+        code, _, err = run("predict", *inputs)
+        assert code == 0, err
+    assert "1 read, 11 passed over, 0 could not be read" in err
+    assert read_melanin(tmp_path / "skinmaps") == {"a.json": 0.2}
+
+
 @pytest.mark.parametrize("part", PARTS)
 @pytest.mark.parametrize("verb", ["predict", "edit"])
 def test_a_result_that_is_named_is_refused(run: Run, tmp_path: Path, part: str, verb: str) -> None:
