@@ -133,8 +133,8 @@ def _add_edit(verbs: "argparse._SubParsersAction[argparse.ArgumentParser]") -> N
         "--output",
         type=Path,
         metavar="FILE",
-        help=".png or .jpg; by default INPUT_edited.png, with a number if that is another file. "
-        "JPEG changes every pixel a little",
+        help="its suffix chooses the format; by default INPUT_edited in the format of the input, "
+        "with a number if that is another file. JPEG changes every pixel a little",
     )
     for pigment in ("melanin", "hemoglobin"):
         verb.add_argument(
@@ -251,21 +251,24 @@ def _describe_run(counts: Counter[str], found: "Walk") -> str:
 
 def _edit(options: argparse.Namespace) -> int:
     """Write one photograph with its pigments multiplied."""
+    from skinnet.images._mark import EDITED, Mark
     from skinnet.images._walk import find_one
+    from skinnet.images._write import choose_suffix, find_format, write_picture
     from skinnet.inference._own_results import choose_edit_target
     from skinnet.inference.decomposer import Decomposer
-    from skinnet.inference.results import _check_suffix, _write_picture
 
     if options.output is not None:
-        _check_suffix(options.output)
+        find_format(options.output)
     decomposer = Decomposer(options.model)
     source, picture, notes = _read(find_one(options.input))
-    target = choose_edit_target(source, options.output, ".png")
-    edited = decomposer.edit(
+    suffix, changes = choose_suffix(picture, "" if source.path is None else source.path.suffix)
+    target = choose_edit_target(source, options.output, suffix)
+    edited = decomposer.edit_picture(
         picture, options.melanin, options.hemoglobin, options.whole_image, source.name
     )
-    _write_picture(target, edited, source.digest)
-    for note in (*notes, *picture.notes):
+    losses = write_picture(target, edited, Mark("edit", EDITED, source.digest))
+    changes = () if options.output else changes
+    for note in (*notes, *edited.notes, *changes, *losses):
         _note(note)
     _print(f"{source.name}: {target}")
     return _OK

@@ -48,7 +48,7 @@ def test_commands_run() -> None:
     for command in ours:
         words = shlex.split(command, comments=True)[1:]
         assert main([*words, *SMALL.get(words[0], ())]) == 0
-    assert Path("skinmaps/photo_panel.png").is_file() and Path("photo_edited.png").is_file()
+    assert Path("skinmaps/photo_panel.png").is_file() and Path("photo_edited.jpg").is_file()
     assert Path("scans/skinmaps/1_edited_panel.png").is_file()
 
 

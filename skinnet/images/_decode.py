@@ -1,7 +1,6 @@
 """Picture files and Pillow images of any format and mode to pictures."""
 
 import warnings
-from collections.abc import Mapping
 from io import BytesIO
 from typing import Any, BinaryIO
 
@@ -11,6 +10,7 @@ from skinnet.errors import InputError
 from skinnet.files import READ_ERRORS
 from skinnet.images._colour_decision import decide_colour_space
 from skinnet.images._kind import HEIF, OTHER, PICTURE, identify
+from skinnet.images._metadata import keep_metadata
 from skinnet.images._pixels import read_pixels
 from skinnet.images.picture import Picture
 
@@ -29,8 +29,6 @@ _DAMAGES = (Image.DecompressionBombError, *READ_ERRORS)
 _SUBFILE_TYPE, _PHOTOMETRIC, _DNG_VERSION = 254, 262, 50706
 _RAW_PHOTOMETRICS = (32803, 34892)
 """A mosaic of colour filters, and linear raw pixels."""
-
-_METADATA = ("exif", "xmp", "dpi", "comment", "photoshop")
 
 
 def decode_file(file: BinaryIO | BytesIO, name: str, upright: bool = True) -> Picture:
@@ -80,7 +78,7 @@ def _decode(image: Image.Image, name: str, data: bytes, upright: bool) -> Pictur
         pixels.alpha,
         space,
         image.format or "",
-        _keep_metadata(image),
+        keep_metadata(image, data),
         (*notes, *_count_frames(image, name)),
     )
     _ = picture.srgb  # damage that the profile shows is damage of the file
@@ -97,10 +95,6 @@ def _refuse_raw(image: Image.Image, data: bytes, name: str) -> None:
             f"{name} is a RAW file, or one that begins with a preview; develop it to JPEG, PNG or "
             "TIFF in sRGB first."
         )
-
-
-def _keep_metadata(image: Image.Image) -> Mapping[str, Any]:
-    return {key: image.info[key] for key in _METADATA if key in image.info}
 
 
 def _count_frames(image: Image.Image, name: str) -> tuple[str, ...]:

@@ -56,7 +56,8 @@ def _encode_cmyk(
         for each in (linear, before)
     )
     difference = (new.astype(np.float32) - was.astype(np.float32)) * (top / 65535)
-    return np.rint(old + difference).clip(0, top).astype(old.dtype)
+    values: NDArray[Any] = np.rint(old + difference).clip(0, top).astype(old.dtype)
+    return values
 
 
 def _encode_plain_cmyk(linear: NDArray[np.float32], old: NDArray[Any]) -> NDArray[Any]:
@@ -65,4 +66,5 @@ def _encode_plain_cmyk(linear: NDArray[np.float32], old: NDArray[Any]) -> NDArra
     rgb = linear_to_srgb(linear)
     white = np.maximum(1 - old[..., 3:] / top, rgb.max(-1, keepdims=True))
     inks = 1 - rgb / np.maximum(white, 1 / top)
-    return np.rint(np.concatenate([inks, 1 - white], -1) * top).clip(0, top).astype(old.dtype)
+    values = np.rint(np.concatenate([inks, 1 - white], -1) * top).clip(0, top)
+    return values.astype(old.dtype)

@@ -6,17 +6,13 @@ from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
-from PIL import Image
 
 from skinnet.errors import InputError
-from skinnet.files import write_atomically, write_text, write_together
-from skinnet.images._mark import EDITED, PROCESSING_SOFTWARE, Mark
+from skinnet.files import write_text, write_together
+from skinnet.images._mark import Mark
 from skinnet.images.photograph import write_png
 from skinnet.inference.decomposition import Decomposition
 from skinnet.inference.panel import draw_panel
-
-_PICTURE_SUFFIXES = (".png", ".jpg", ".jpeg")
-"""Suffixes with which an edited photograph is written."""
 
 _LEVELS = 65535
 
@@ -86,31 +82,6 @@ def _list_ends(decomposition: Decomposition) -> list[str]:
     """List the ends of the names of the files that `write_results` writes."""
     names = ("panel", "reconstruction", *decomposition.maps())
     return [*(f"_{name}.png" for name in names), ".json"]
-
-
-def _write_picture(path: Path, photo: NDArray[np.uint8], digest: str = "") -> None:
-    """Write uint8 sRGB [H, W, 3] as PNG or JPEG, by the suffix, with the mark of an edit."""
-    _check_suffix(path)
-    mark = Mark("edit", EDITED, digest)
-    try:
-        if path.suffix.lower() == ".png":
-            write_png(path, photo, mark.to_text())
-        else:
-            exif = Image.Exif()
-            exif[PROCESSING_SOFTWARE] = str(mark)
-            with write_atomically(path) as part:
-                Image.fromarray(photo).save(part, "JPEG", quality=95, subsampling=0, exif=exif)
-    except OSError as error:
-        raise InputError(
-            f"{path} cannot be written ({error.strerror}); choose another file with -o."
-        ) from error
-
-
-def _check_suffix(path: Path) -> None:
-    if path.suffix.lower() not in _PICTURE_SUFFIXES:
-        raise InputError(
-            f"{path} has to end in {', '.join(_PICTURE_SUFFIXES)}; got {path.suffix!r}."
-        )
 
 
 def _write_map(path: Path, name: str, decomposition: Decomposition, mark: Mark) -> None:

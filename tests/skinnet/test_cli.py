@@ -239,7 +239,10 @@ def test_edit_writes_the_format_that_is_asked_for(
 @pytest.mark.parametrize(
     ("options", "words"),
     [
-        (["-o", "b.gif"], "b.gif has to end in .png, .jpg, .jpeg; got '.gif'"),
+        (
+            ["-o", "b.gif"],
+            "b.gif has to end in .jpg, .png, .tif, .webp, .avif, .heic, .bmp, .ppm; got '.gif'",
+        ),
         (["-o", "b"], "got ''"),
         (["-o", "a.png"], "a.png is the photograph itself; choose another file with -o"),
         (["-o", "./a.png"], "is the photograph itself"),
