@@ -22,7 +22,7 @@ def test_a_missing_extra_is_named(package: str, missing: str, arguments: list[st
     assert f'pip install -e ".[{package}]"' in done.stderr and "Traceback" not in done.stderr
 
 
-@pytest.mark.parametrize("missing", ["jsonargparse", "trimesh", "embreex", "torch"])
+@pytest.mark.parametrize("missing", ["jsonargparse", "trimesh", "torch"])
 @pytest.mark.slow
 def test_a_verb_without_the_scans_extra_names_it(missing: str) -> None:
     code = (
@@ -34,3 +34,17 @@ def test_a_verb_without_the_scans_extra_names_it(missing: str) -> None:
     done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True)
     assert done.returncode == 2
     assert 'pip install "skinnet[scans]"' in done.stderr and "Traceback" not in done.stderr
+
+
+@pytest.mark.slow
+def test_a_verb_needs_no_embree() -> None:
+    """It has no wheel for some platforms, and rays are cast without it there."""
+    code = (
+        "import sys\n"
+        "sys.modules['embreex'] = None\n"
+        "from skinnet.cli import main\n"
+        "sys.exit(main(['maps', 'absent.obj']))\n"
+    )
+    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True)
+    assert done.returncode == 2
+    assert "absent.obj" in done.stderr and "pip install" not in done.stderr
