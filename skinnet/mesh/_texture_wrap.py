@@ -7,7 +7,6 @@ import numpy as np
 from jaxtyping import Float
 
 from skinnet.errors import InputError
-from skinnet.images._decode import MAX_PIXELS
 from skinnet.mesh._mesh_parts import MeshGeometry
 from skinnet.mesh._texture_file import Texture
 from skinnet.mesh._topology import weld
@@ -15,6 +14,10 @@ from skinnet.mesh._topology import weld
 # Parts of a list have different sizes.
 _Coordinates = Float[np.ndarray, "_ 2"]
 _Corners = Float[np.ndarray, "_ 3"]
+
+
+_MOST = 1 << 25
+"""Texels to which a texture is continued, if it is not larger itself."""
 
 
 class Wrap(Enum):
@@ -51,7 +54,7 @@ def wrap_texture(
         The parts and the texture.
 
     Raises:
-        InputError: If the texture would have to be continued over more than `MAX_PIXELS`.
+        InputError: If the texture would have to be continued far.
     """
     corners = [part.uv[part.geometry.triangles] for part in parts]
     every = np.concatenate(corners) if corners else np.zeros((0, 3, 2))
@@ -61,7 +64,7 @@ def wrap_texture(
     columns, left, right = _place(every[..., 0], wraps[0], width)
     rows, top, bottom = _place(every[..., 1], wraps[1], height)
     shape = height + top + bottom, width + left + right
-    if shape[0] * shape[1] > MAX_PIXELS:
+    if shape[0] * shape[1] > max(_MOST, 2 * height * width):
         raise InputError(
             f"{name} has faces that repeat their texture, from {every.min():.3g} to "
             f"{every.max():.3g} of it; unwrap it onto [0, 1]."

@@ -10,6 +10,8 @@ from skinnet.mesh._gltf.container import GltfFile
 _COMPONENTS = {5120: "i1", 5121: "u1", 5122: "<i2", 5123: "<u2", 5125: "<u4", 5126: "<f4"}
 _WIDTHS = {"SCALAR": 1, "VEC2": 2, "VEC3": 3, "VEC4": 4, "MAT2": 4, "MAT3": 9, "MAT4": 16}
 
+_MOST = 1 << 28
+
 # Integers stay integers unless they are normalised to fractions.
 Values = Shaped[np.ndarray, "count width"]
 
@@ -34,6 +36,8 @@ def read_accessor(file: GltfFile, index: Any, normalise: bool = False) -> Values
             f"{accessor['type']}"
         )
     shape = accessor["count"], width
+    if not 0 <= shape[0] <= _MOST:
+        raise file.damage(f"its accessor {index} states {shape[0]:,} elements")
     if "bufferView" in accessor:
         values = _read_view(file, accessor, np.dtype(kind), shape)
     else:

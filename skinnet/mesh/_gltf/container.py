@@ -34,11 +34,11 @@ class GltfFile:
         element = listed[index]
         if not isinstance(element, dict):
             raise self.damage(f"number {index} of its {kind} is no object")
-        return element
+        return {key: value for key, value in element.items() if value is not None}
 
     def damage(self, fault: str) -> InputError:
         """Make the error for a file that is not as glTF 2.0 says."""
-        return _damage(self.path, fault)
+        return describe_damage(self.path, fault)
 
     def read_view(self, index: Any) -> bytes:
         """Read the bytes of a buffer view."""
@@ -134,18 +134,20 @@ def open_gltf(path: Path) -> GltfFile:
 def _split_chunks(path: Path, data: bytes) -> tuple[bytes, bytes | None]:
     """Split a GLB into its JSON and its binary chunk."""
     if len(data) < 20:
-        raise _damage(path, f"it has {len(data)} bytes, less than the header of a GLB file")
+        raise describe_damage(path, f"it has {len(data)} bytes, less than the header of a GLB file")
     version, length = struct.unpack_from("<II", data, 4)
     if version != 2:
         raise _other_version(path, str(version))
     if length > len(data):
-        raise _damage(path, f"it has {len(data):,} of the {length:,} bytes that its header states")
+        raise describe_damage(
+            path, f"it has {len(data):,} of the {length:,} bytes that its header states"
+        )
     chunks: dict[int, bytes] = {}
     place = 12
     while place + 8 <= length:
         size, kind = struct.unpack_from("<II", data, place)
         if place + 8 + size > len(data):
-            raise _damage(path, f"a chunk of {size:,} bytes goes beyond its end")
+            raise describe_damage(path, f"a chunk of {size:,} bytes goes beyond its end")
         chunks.setdefault(kind, data[place + 8 : place + 8 + size])
         # Sizes are multiples of four; where one is not, writers differ on whether padding follows.
         place += 8 + size
@@ -153,18 +155,27 @@ def _split_chunks(path: Path, data: bytes) -> tuple[bytes, bytes | None]:
         if data[place + padding + 4 : place + padding + 8] == b"BIN\0":
             place += padding
     if _JSON not in chunks:
-        raise _damage(path, "it has no JSON chunk")
+        raise describe_damage(path, "it has no JSON chunk")
     return chunks[_JSON], chunks.get(_BINARY)
 
 
 def _parse(path: Path, text: bytes) -> dict[str, Any]:
     try:
-        document = json.loads(text.decode("utf-8-sig").rstrip("\0 \r\n\t"))
+        plain = text.decode("utf-8-sig").rstrip("\0 \r\n\t")
+        document = json.loads(plain, parse_float=_parse_number)
     except (ValueError, RecursionError) as error:
-        raise _damage(path, f"its JSON begins with {text[:24]!r} and is broken: {error}") from error
+        raise describe_damage(
+            path, f"its JSON begins with {text[:24]!r} and is broken: {error}"
+        ) from error
     if not isinstance(document, dict):
-        raise _damage(path, "its JSON is not an object")
+        raise describe_damage(path, "its JSON is not an object")
     return document
+
+
+def _parse_number(text: str) -> int | float:
+    """Parse a number; some writers give integers as 1.0."""
+    number = float(text)
+    return int(number) if number.is_integer() and abs(number) < 2**53 else number
 
 
 def _check_version(path: Path, document: dict[str, Any]) -> None:
@@ -185,7 +196,8 @@ def _other_version(path: Path, version: str) -> InputError:
     )
 
 
-def _damage(path: Path, fault: str) -> InputError:
+def describe_damage(path: Path, fault: str) -> InputError:
+    """Make the error for a file that is not as glTF 2.0 says."""
     return InputError(f"{path} cannot be read as a mesh: {fault}; copy or export it again.")
 
 

@@ -8,7 +8,7 @@ import numpy as np
 from skinnet.errors import InputError
 from skinnet.files import READ_ERRORS
 from skinnet.images import linear_to_srgb, to_uint8
-from skinnet.mesh._gltf.container import GltfFile, open_gltf
+from skinnet.mesh._gltf.container import GltfFile, describe_damage, open_gltf
 from skinnet.mesh._gltf.materials import Material, list_other_pictures, read_material
 from skinnet.mesh._gltf.nodes import compute_transforms, describe_scene, list_instances
 from skinnet.mesh._gltf.pictures import read_base_picture
@@ -47,13 +47,12 @@ def read_gltf(path: Path, given: Texture | None = None, textured: bool = True) -
         InputError: For a file that is damaged, of another version, without triangles, or that
             states something which is not read.
     """
-    file = open_gltf(path)
     try:
-        return _read_content(file, given, textured)
+        return _read_content(open_gltf(path), given, textured)
     except InputError:
         raise
     except READ_ERRORS as error:
-        raise file.damage(f"{type(error).__name__}, {error}") from error
+        raise describe_damage(path, f"{type(error).__name__}, {error}") from error
 
 
 def _read_content(file: GltfFile, given: Texture | None, textured: bool) -> MeshContent:

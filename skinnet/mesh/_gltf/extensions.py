@@ -20,7 +20,8 @@ _NEUTRAL = frozenset(
     KHR_materials_transmission KHR_materials_variants KHR_materials_volume
     KHR_materials_volume_scatter KHR_lights_punctual KHR_xmp KHR_xmp_json_ld KHR_animation_pointer
     EXT_lights_image_based EXT_lights_ies EXT_mesh_features EXT_structural_metadata
-    EXT_instance_features KHR_node_hoverability KHR_node_selectability MSFT_lod
+    EXT_instance_features KHR_node_hoverability KHR_node_selectability KHR_audio_emitter
+    KHR_implicit_shapes KHR_physics_rigid_bodies FB_ngon_encoding GODOT_single_root MSFT_lod
     """.split()
 )
 # Whether there is something to read without them is known where they are used.
@@ -46,7 +47,7 @@ def check_required(path: Path, document: dict[str, Any]) -> None:
         InputError: If it requires another one.
     """
     known = _READ | _NEUTRAL | _CHECKED_IN_USE
-    unknown = [name for name in document.get("extensionsRequired", []) if name not in known]
+    unknown = [name for name in document.get("extensionsRequired") or [] if name not in known]
     if unknown:
         several = "s" if len(unknown) > 1 else ""
         raise InputError(

@@ -11,6 +11,9 @@ from skinnet.mesh.raster import rasterise
 _TOLERANCE = 0.02
 """Largest difference of two colours, in [0, 1], that counts as rounding."""
 
+_MOST = 2048
+"""Most texels along a side of the map of interpolated colours."""
+
 _SHRINK = 1e-6
 
 _AMBIGUOUS = 0.002
@@ -27,9 +30,8 @@ def bake_colours(texture: Texture, corners: _Corners, colours: _Colours) -> Text
     Returns:
         The texture; None if faces of different colours use the same texels.
     """
-    height, width = texture.shape[:2]
-    size = max(height, width)
-    square = corners * [width / size, height / size] * [1, -1] + [0, 1]
+    size = min(max(texture.shape[:2]), _MOST)
+    square = corners * [1, -1] + [0, 1]
     first = _interpolate(square, colours, size)
     # A little smaller, so that neighbours do not share the texels on their edges.
     smaller = square + _SHRINK * (square.mean(1, keepdims=True) - square)
@@ -39,8 +41,19 @@ def bake_colours(texture: Texture, corners: _Corners, colours: _Colours) -> Text
     if not drawn.any() or differing.mean() > _AMBIGUOUS:
         return None
     nearest = distance_transform_edt(~drawn, return_distances=False, return_indices=True)
-    factor = first[tuple(nearest)][:height, :width]
-    return to_uint8(linear_to_srgb(srgb_to_linear(texture) * factor))
+    return _multiply(texture, first[tuple(nearest)])
+
+
+def _multiply(texture: Texture, factor: Float[np.ndarray, "size size 3"]) -> Texture:
+    """Multiply a texture with a map of factors that covers it, row by row to save memory."""
+    height, width = texture.shape[:2]
+    rows = (np.arange(height) + 0.5) * len(factor) // height
+    columns = ((np.arange(width) + 0.5) * len(factor) // width).astype(np.int64)
+    product = np.empty_like(texture)
+    for row, place in enumerate(rows.astype(np.int64)):
+        linear = srgb_to_linear(texture[row]) * factor[place, columns]
+        product[row] = to_uint8(linear_to_srgb(linear))
+    return product
 
 
 def _interpolate(
