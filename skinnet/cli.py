@@ -212,17 +212,20 @@ def _write(
     notes: Sequence[str],
     options: argparse.Namespace,
 ) -> None:
+    """Write the results of a photograph under a name that is free or its own, and print them."""
+    from skinnet.images._result_names import lock_folder
     from skinnet.inference._own_results import OUTPUT, choose_result_stem
-    from skinnet.inference.results import _list_ends, write_results
+    from skinnet.inference.results import _list_ends, _make_folder, write_results
 
-    folder: Path = options.output or source.folder / OUTPUT
-    stem = choose_result_stem(folder, source, _list_ends(decomposition))
-    if stem != source.stem:
-        others = f"{folder} holds other files of the name {source.stem}"
-        notes = (*notes, f"{others}; the results of {source.name} are numbered: {stem}.")
-    summary = {"file": source.name, "input": source.describe(folder)} | decomposition.summary()
-    summary["notes"] = [*notes, *summary["notes"]]
-    count = write_results(folder, stem, picture.srgb, decomposition, summary, source.digest)
+    folder = _make_folder(options.output or source.folder / OUTPUT)
+    with lock_folder(folder):
+        stem = choose_result_stem(folder, source, _list_ends(decomposition))
+        if stem != source.stem:
+            others = f"{folder} holds other files of the name {source.stem}"
+            notes = (*notes, f"{others}; the results of {source.name} are numbered: {stem}.")
+        summary = {"file": source.name, "input": source.describe(folder)} | decomposition.summary()
+        summary["notes"] = [*notes, *summary["notes"]]
+        count = write_results(folder, stem, picture.srgb, decomposition, summary, source.digest)
     for note in summary["notes"]:
         _note(note)
     if options.json:

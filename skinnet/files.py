@@ -4,7 +4,7 @@ import os
 import struct
 import zlib
 from collections.abc import Callable, Iterator
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from pathlib import Path
 from secrets import token_hex
 
@@ -23,8 +23,8 @@ def write_together() -> Iterator[Callable[[Path], Path]]:
 
     Yields:
         A function from the path of a file to the temporary path to write it to, in the same folder.
-        At the end all temporary files are renamed. If an error is raised before, none of the new
-        files is left.
+        At the end all temporary files are renamed. If an error is raised before or then, none of
+        the new files is left, and older files of these names stay.
 
     Raises:
         InputError: A folder has the name of one of the files.
@@ -46,15 +46,30 @@ def write_together() -> Iterator[Callable[[Path], Path]]:
         return parts.setdefault(path, path.with_name(f".{token_hex(6)}.part{path.suffix}"))
 
     renamed: list[Path] = []
+    older: dict[Path, Path] = {}
     try:
         yield name_temporary
         for path, part in parts.items():
+            _keep_older(path, older)
             os.replace(part, path)
             renamed.append(path)
     except BaseException:
         for path in (*renamed, *parts.values()):
             path.unlink(missing_ok=True)
+        for path, kept in older.items():
+            os.replace(kept, path)
+            kept.unlink(missing_ok=True)  # it stays where both are names of one file
         raise
+    for kept in older.values():
+        kept.unlink(missing_ok=True)
+
+
+def _keep_older(path: Path, older: dict[Path, Path]) -> None:
+    """Give a file that is about to be replaced a second name, until all have been written."""
+    kept = path.with_name(f".{token_hex(6)}.old{path.suffix}")
+    with suppress(OSError):  # there is no such file, or the file system has no links
+        os.link(path, kept, follow_symlinks=False)
+        older[path] = kept
 
 
 @contextmanager

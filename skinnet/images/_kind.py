@@ -58,7 +58,7 @@ _HEAD = 4096
 _TIFF = (b"II*\0", b"MM\0*", b"II+\0", b"MM\0+")
 _HEIF_BRANDS = frozenset(b"heic heix heim heis hevc hevx hevm hevs mif1 msf1".split())
 _AVIF_BRANDS = frozenset(b"avif avis".split())
-_PNM = re.compile(rb"P[1-6]\s(?:\s*#[^\n\r]*[\n\r])*\s*\d")
+_PNM = re.compile(rb"P[1-6](?:(?:\s|#[^\n\r]*[\n\r])+\d+){2}\s")
 _BMP = re.compile(rb"BM.{12}[\x0c\x10\x28\x34\x38\x40\x6c\x7c]\0\0\0", re.DOTALL)
 
 _STARTS: tuple[tuple[bytes, Kind], ...] = (

@@ -5,6 +5,7 @@ import os
 import re
 import struct
 import warnings
+import zlib
 from collections.abc import Iterator
 from io import BufferedIOBase
 from pathlib import Path
@@ -33,7 +34,7 @@ _SCAN_PICTURES = {
 """Pictures of scans by the end of their names, and the archives that lie beside them."""
 
 _PNG = b"\x89PNG\r\n\x1a\n"
-_TAIL = 256
+_TAIL, _LONGEST_TEXT = 256, 4096
 _Source = str | Path | BinaryIO | BufferedIOBase
 
 
@@ -129,7 +130,7 @@ def _read_png(file: BinaryIO | BufferedIOBase) -> Mark | None:
             if mark := _find_line(exif):
                 return mark
         keyword, _, text = body.partition(b"\0")
-        texts[keyword.decode("latin-1")] = text.decode("latin-1")
+        texts[keyword.decode("latin-1")] = _decode_text(name, text).decode("utf-8", "replace")
     software = texts.get("Software", "")
     if mark := parse_mark(texts.get("skinnet")) or parse_mark(software):
         return mark
@@ -138,12 +139,26 @@ def _read_png(file: BinaryIO | BufferedIOBase) -> Mark | None:
     return Mark("predict", "map", "", "") if texts.keys() >= _OLD_MAP else None
 
 
+def _decode_text(name: bytes, text: bytes) -> bytes:
+    """The text of a chunk; other programs may have compressed it or stated its language."""
+    if name == b"zTXt":
+        return _decompress(text[1:])
+    if name == b"iTXt":
+        compressed, (_, _, rest) = text[:1] == b"\1", text[2:].split(b"\0", 2)
+        return _decompress(rest) if compressed else rest
+    return text
+
+
+def _decompress(data: bytes) -> bytes:
+    return zlib.decompressobj().decompress(data, _LONGEST_TEXT)
+
+
 def _list_chunks(file: BinaryIO | BufferedIOBase) -> Iterator[tuple[bytes, bytes]]:
     """The text and EXIF chunks of a PNG file, which may stand on both sides of its pixels."""
     file.seek(len(_PNG))
     while len(head := file.read(8)) == 8 and head[4:] != b"IEND":
         length, name = struct.unpack(">I4s", head)
-        if name in (b"tEXt", b"eXIf"):
+        if name in (b"tEXt", b"zTXt", b"iTXt", b"eXIf"):
             yield name, file.read(length)
             length = 0
         file.seek(length + 4, os.SEEK_CUR)

@@ -3,7 +3,8 @@
 import hashlib
 import os
 import unicodedata
-from collections.abc import Callable, Iterable, Mapping
+from collections.abc import Callable, Iterable, Iterator, Mapping
+from contextlib import contextmanager, suppress
 from pathlib import Path
 from typing import Any
 
@@ -33,6 +34,24 @@ def choose_stem(folder: Path, stem: str, ends: Iterable[str], belongs: Belongs) 
         number += 1
         chosen = f"{stem}-{number}"
     return chosen
+
+
+@contextmanager
+def lock_folder(folder: Path) -> Iterator[None]:
+    """Keep other processes from choosing names in a folder, where the system has such locks."""
+    try:
+        import fcntl
+
+        descriptor = os.open(folder, os.O_RDONLY)
+    except (ImportError, OSError):  # Windows; writing says what is wrong with the folder
+        yield
+        return
+    try:
+        with suppress(OSError):  # some network file systems have no locks
+            fcntl.flock(descriptor, fcntl.LOCK_EX)
+        yield
+    finally:
+        os.close(descriptor)
 
 
 def compute_digest(path: Path) -> str:
@@ -86,4 +105,6 @@ def _list_names(folder: Path) -> dict[str, list[str]]:
 
 def _fold(name: str) -> str:
     """A spelling that is the same for names that some file systems hold for one."""
+    if name.isascii():  # a folder may hold a hundred thousand
+        return name.lower()
     return unicodedata.normalize("NFC", unicodedata.normalize("NFC", name).casefold())

@@ -56,8 +56,8 @@ def write_results(
         >>> write_results(folder, "a", photo, decomposition, decomposition.summary())
         11
     """
+    _make_folder(folder)
     try:
-        folder.mkdir(parents=True, exist_ok=True)
         with write_together() as temporary:
             pictures = {
                 "panel": draw_panel(photo, decomposition),
@@ -72,10 +72,23 @@ def write_results(
             record = json.dumps(summary, indent=2, allow_nan=False)
             write_text(temporary(folder / f"{stem}.json"), record + "\n")
     except OSError as error:
-        raise InputError(
-            f"{folder} cannot be written ({error.strerror}); choose another folder with -o."
-        ) from error
+        raise _describe_fault(folder, error) from error
     return len(_list_ends(decomposition))
+
+
+def _make_folder(folder: Path) -> Path:
+    """Make the folder of results if it does not exist."""
+    try:
+        folder.mkdir(parents=True, exist_ok=True)
+    except OSError as error:
+        raise _describe_fault(folder, error) from error
+    return folder
+
+
+def _describe_fault(folder: Path, error: OSError) -> InputError:
+    return InputError(
+        f"{folder} cannot be written ({error.strerror}); choose another folder with -o."
+    )
 
 
 def _list_ends(decomposition: Decomposition) -> list[str]:

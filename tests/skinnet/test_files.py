@@ -1,3 +1,4 @@
+import os
 from pathlib import Path
 
 import pytest
@@ -37,6 +38,27 @@ def test_files_are_written_together_or_not_at_all(tmp_path: Path) -> None:
     assert [file.name for file in tmp_path.iterdir()] == ["b"]
     write_two(tmp_path, "e", "f", "2")
     assert sorted(file.name for file in tmp_path.iterdir()) == ["b", "e", "f"]
+
+
+def test_a_failed_rename_leaves_all_older_files(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    for name in ("a", "b"):
+        (tmp_path / name).write_text("old")
+    replace = os.replace
+
+    def refuse(source: Path, target: Path) -> None:
+        if target.name == "b" and source.suffix != ".old" and ".part" in source.name:
+            raise PermissionError(13, "Permission denied")  # as for a file that a viewer holds open
+        replace(source, target)
+
+    monkeypatch.setattr(os, "replace", refuse)
+    with pytest.raises(PermissionError):
+        write_two(tmp_path, "a", "b", "new")
+    assert {path.name: path.read_text() for path in tmp_path.iterdir()} == {"a": "old", "b": "old"}
+    monkeypatch.setattr(os, "replace", replace)
+    write_two(tmp_path, "a", "b", "new")
+    assert {path.name: path.read_text() for path in tmp_path.iterdir()} == {"a": "1", "b": "new"}
 
 
 def test_a_folder_that_cannot_be_made_is_named(tmp_path: Path) -> None:

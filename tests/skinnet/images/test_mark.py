@@ -92,6 +92,17 @@ def test_text_after_the_pixels_is_found(tmp_path: Path) -> None:
     assert read_mark(path) == EDIT
 
 
+@pytest.mark.parametrize("kind", ["compressed", "international", "both"])
+def test_text_that_other_programs_have_written_anew_is_found(tmp_path: Path, kind: str) -> None:
+    info = PngImagePlugin.PngInfo()
+    for key, value in EDIT.to_text().items():
+        if kind == "compressed":
+            info.add_text(key, value, zip=True)
+        else:
+            info.add_itxt(key, value, zip=kind == "both")
+    assert read_mark(save(tmp_path / "a.png", pnginfo=info)) == EDIT
+
+
 def test_an_open_file_keeps_its_place(tmp_path: Path) -> None:
     file = io.BytesIO(save(tmp_path / "a.jpg", exif=make_exif(str(EDIT))).read_bytes())
     file.seek(3)
