@@ -11,14 +11,19 @@ so the errors of transform and pigments are printed.
 import argparse
 import json
 import shlex
+import sys
 from pathlib import Path
 
 import numpy as np
 import torch
 import torch.nn.functional as F
 
+from examples._command import check_number
+from examples._command import run as run_command
 from skinnet.appearance import SkinColour, load_maps
 from skinnet.cli import main as skinnet
+from skinnet.errors import InputError
+from skinnet.files import READ_ERRORS, make_folder
 from skinnet.images import linear_to_srgb, to_uint8
 from skinnet.mesh import Mesh, write_mesh
 from skinnet.physics import load_spectrum_to_srgb
@@ -68,7 +73,7 @@ def _simplify(face: FaceParameters, f_mel: float) -> FaceParameters:
     )
 
 
-def write_person(path: Path, truth: dict[str, np.ndarray], colour: SkinColour) -> None:
+def write_person(path: Path, truth: dict[str, np.ndarray], colour: SkinColour, people: int) -> None:
     """Write a scan of that person as OBJ with PNG and landmarks, and the true maps as .npz."""
     model = load_shape_model()
     alpha = truth["variates"][: len(model.variances)] * np.sqrt(model.variances)
@@ -78,10 +83,31 @@ def write_person(path: Path, truth: dict[str, np.ndarray], colour: SkinColour) -
     rgb = (1 - truth["cover"]) * skin + truth["cover"] * truth["paint"]
     texture = to_uint8(linear_to_srgb(np.moveaxis(rgb, 0, -1)))
     textured = Mesh(mesh.vertices, mesh.triangles, mesh.uv, mesh.uv_triangles, texture)
-    write_mesh(path, textured)
+    pigments = {name: truth[name] for name in PIGMENTS}
+    numbers = np.array([people, len(truth["f_mel"])])
+    np.savez(path.with_name(f"{path.stem}_truth.npz"), numbers=numbers, **pigments)
     marks = {name: mesh.vertices[vertex] for name, vertex in model.landmarks.items()}
     write_landmarks(path.with_name(f"{path.stem}_landmarks.csv"), marks)
-    np.savez(path.with_name(f"{path.stem}_truth.npz"), **{name: truth[name] for name in PIGMENTS})
+    # Last, so that a person whose scan is there is complete.
+    write_mesh(path, textured)
+
+
+def is_painted(scan: Path, people: int, texels: int) -> bool:
+    """Whether a scan was painted with these numbers before; another file of its name is refused."""
+    truth = scan.with_name(f"{scan.stem}_truth.npz")
+    if not scan.exists() and not truth.exists():
+        return False
+    try:
+        with np.load(truth, allow_pickle=False) as file:
+            known = file["numbers"].tolist() == [people, texels]
+    except READ_ERRORS:
+        known = False
+    if not known:
+        raise InputError(
+            f"{scan} is there already and was not painted for {people} people with {texels} "
+            "texels; choose another folder with -o, or move it away."
+        )
+    return True
 
 
 def run(*words: object) -> None:
@@ -109,27 +135,36 @@ def report(scans: list[Path], maps: Path) -> None:
         print(f"{name}: median of each person, r {relation:.3f}, RMSE {off:.4f}")
 
 
-def main() -> None:
-    """Paint people, write their scans, run the commands."""
+def main(arguments: list[str] | None = None) -> int:
+    """Paint people, write their scans, run the commands; return 2 for bad arguments."""
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("-o", "--output", type=Path, default=Path("runs/lightstage"))
     parser.add_argument("--people", type=int, default=25)
     parser.add_argument("--texels", type=int, default=1024)
-    options = parser.parse_args()
-    options.output.mkdir(parents=True, exist_ok=True)
+    options = parser.parse_args(arguments)
+    return run_command(lambda: study(options.output, options.people, options.texels))
+
+
+def study(folder: Path, people: int, texels: int) -> None:
+    """Paint people, and run the commands on their scans."""
+    check_number("people", people, 3, 999)
+    check_number("texels", texels, 16, 8192)
+    make_folder(folder, "choose another folder with -o")
     colour = SkinColour(load_spectrum_to_srgb(LIGHT, CAMERA).numpy(), FILTER)
-    scans = [options.output / f"person_{number:02}.obj" for number in range(options.people)]
+    scans = [folder / f"person_{number:02}.obj" for number in range(people)]
+    painted = [is_painted(scan, people, texels) and scan.is_file() for scan in scans]
     for number, scan in enumerate(scans):
-        if not scan.is_file():
-            write_person(scan, paint_person(number, options.people, options.texels), colour)
+        if not painted[number]:
+            write_person(scan, paint_person(number, people, texels), colour, people)
     light = ["--colour.light", LIGHT, "--colour.camera", CAMERA, "--colour.calibration", "full"]
-    maps = options.output / "skinmaps"
-    run("maps", *scans, *light, f"--warp.size={options.texels}", "--warp.own_uv=true", "-o", maps)
+    maps = folder / "skinmaps"
+    run("maps", *scans, *light, f"--warp.size={texels}", "--warp.own_uv=true", "-o", maps)
     report(scans, maps)
+    files = [maps / f"{scan.stem}_maps.npz" for scan in scans]
     for effect in ("false", "true"):
-        output = options.output / ("model" if effect == "false" else "model_effect")
-        run("build-model", maps, "-o", output, f"--model.effect={effect}", "--joint=true")
+        output = folder / ("model" if effect == "false" else "model_effect")
+        run("build-model", *files, "-o", output, f"--model.effect={effect}", "--joint=true")
 
 
 if __name__ == "__main__":
-    main()
+    sys.exit(main())

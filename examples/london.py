@@ -11,6 +11,7 @@ pictures show real people and stay out of the project.
 """
 
 import argparse
+import sys
 from collections.abc import Sequence
 from pathlib import Path
 
@@ -20,10 +21,14 @@ from scipy.spatial import Delaunay
 from skimage.draw import polygon2mask, polygon_perimeter
 from skimage.morphology import dilation, disk, erosion
 
+from examples._command import run
 from skinnet.appearance import HybridModel, save_maps
 from skinnet.cli import main as skinnet
+from skinnet.errors import InputError
+from skinnet.files import make_folder
 from skinnet.images import read_photo, srgb_to_linear
 from skinnet.pipeline import ColourSettings, invert_texture
+from skinnet.pipeline._source import Source, choose_folder
 from skinnet.shape import compute_chart_angles
 from skinnet.texture import TextureSpace, WarpedTexture, warp_texture
 from train.synthetic.model_skins import save_model_skins
@@ -94,6 +99,11 @@ def mark_skin(mean: np.ndarray) -> np.ndarray:
 def warp_portraits(folder: Path) -> tuple[list[Path], list[np.ndarray], np.ndarray]:
     """Warp the portraits' linear RGB into the common frame; mark where it is skin."""
     files = sorted(folder.glob("*.tem"))
+    if len(files) < 3:
+        raise InputError(
+            f"{folder} has {len(files)} portraits with landmarks (NNN_03.jpg and NNN_03.tem), and "
+            "three are needed; name the folder of the set."
+        )
     points = [read_points(file) for file in files]
     mean = average_points(points)
     # The set's outer points lie on hair and neck: triangles are those of the outline's inside.
@@ -144,31 +154,42 @@ def write_skins(portraits: Path, output: Path, count: int) -> None:
     print(f"{output / 'skins.npz'}: {count} skins for synthetic faces")
 
 
-def main() -> None:
-    """Write the portraits' maps, then build and measure the models."""
+def main(arguments: list[str] | None = None) -> int:
+    """Write the portraits' maps, then build and measure the models; return 2 for bad input."""
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("portraits", type=Path)
     parser.add_argument("-o", "--output", type=Path, default=Path("runs/london"))
     parser.add_argument("--calibration", default="common", help="common, full, exposure or none")
     parser.add_argument("--skins", type=int, default=0, help="skins to sample for synthetic faces")
-    options = parser.parse_args()
-    maps = options.output / "maps"
-    maps.mkdir(parents=True, exist_ok=True)
-    files, images, mask = warp_portraits(options.portraits)
-    settings = ColourSettings(calibration=options.calibration)
+    options = parser.parse_args(arguments)
+    return run(lambda: study(options.portraits, options.output, options.calibration, options.skins))
+
+
+def study(portraits: Path, output: Path, calibration: str, skins: int) -> None:
+    """Write the portraits' maps, then build and measure the models."""
+    files, images, mask = warp_portraits(portraits)
+    maps = make_folder(output / "maps", "choose another folder with -o")
+    sources = [Source.read([file.with_suffix(".jpg")]) for file in files]
+    for file, source in zip(files, sources, strict=True):
+        choose_folder(maps, maps, [f"{file.stem}_maps.npz"], source)
+    settings = ColourSettings(calibration=calibration)
     colours = settings.calibrate([image[mask].astype(np.float64) for image in images])
-    rows = zip(files, images, colours.calibration.exposures, strict=True)
-    for file, image, factor in rows:
+    written = []
+    rows = zip(files, sources, images, colours.calibration.exposures, strict=True)
+    for file, source, image, factor in rows:
         texture, off = invert_texture(WarpedTexture(image, mask), factor, colours, file.stem)
-        save_maps(maps / f"{file.stem}_maps.npz", texture, colours.colour)
+        written.append(maps / f"{file.stem}_maps.npz")
+        save_maps(written[-1], texture, colours.colour, source.describe("london", "maps", maps))
         medians = [np.median(one[mask]) for one in (texture.f_mel, texture.f_blood)]
         print(f"{file.stem}: melanin {medians[0]:.3f}, hemoglobin {medians[1]:.3f}, {off:.1%} off")
     for effect in ("false", "true"):
-        output = options.output / ("model" if effect == "false" else "model_effect")
-        skinnet(["build-model", str(maps), "-o", str(output), f"--model.effect={effect}"])
-    if options.skins:
-        write_skins(options.portraits, options.output, options.skins)
+        folder = output / ("model" if effect == "false" else "model_effect")
+        words = ["build-model", *map(str, written), "-o", str(folder)]
+        if skinnet([*words, f"--model.effect={effect}"]):
+            raise SystemExit(2)
+    if skins:
+        write_skins(portraits, output, skins)
 
 
 if __name__ == "__main__":
-    main()
+    sys.exit(main())

@@ -11,7 +11,10 @@ import shlex
 import sys
 from pathlib import Path
 
+from examples._command import run as run_command
 from skinnet.cli import main as skinnet
+from skinnet.pipeline._output import SCAN_ENDS
+from skinnet.pipeline._source import Source, choose_folder
 
 WHITE = ["--colour.white", "[150, 187, 157]"]
 """Colour of the shaded collar of James' white shirt; his texture is not white-balanced."""
@@ -26,18 +29,28 @@ def run(*words: object) -> None:
         sys.exit(code)
 
 
-def main() -> None:
-    """Make maps of both scans, then the edits of Figure 6, seen a little from the side."""
+def main(arguments: list[str] | None = None) -> int:
+    """Make maps of both scans, then their edits; return 2 for bad input."""
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("data", type=Path)
     parser.add_argument("-o", "--output", type=Path, default=Path("runs/scans"))
-    options = parser.parse_args()
-    model = ["--model", options.data / "models/ict_facekit.npz", "-o", options.output]
-    run("maps", options.data / "scans/lps/head.obj", *model)
-    run("maps", options.data / "scans/james/james.obj", *model, *WHITE)
+    options = parser.parse_args(arguments)
+    return run_command(lambda: study(options.data, options.output))
+
+
+def study(data: Path, output: Path) -> None:
+    """Make maps of both scans, then the edits of Figure 6, seen a little from the side."""
+    head, james = data / "scans/lps/head.obj", data / "scans/james/james.obj"
+    for scan in (head, james):
+        # Where a name is taken, the maps would get a number, and the edits would miss them.
+        names = [f"{scan.stem}{end}" for end in SCAN_ENDS]
+        choose_folder(output, output, names, Source.read([scan]))
+    model = ["--model", data / "models/ict_facekit.npz", "-o", output]
+    run("maps", head, *model)
+    run("maps", james, *model, *WHITE)
     for name, change in {"head": ["--hemoglobin", 2], "james": ["--melanin", 1.5]}.items():
-        run("edit-maps", options.output / f"{name}_maps.npz", *change, "--relight.yaw", 20)
+        run("edit-maps", output / f"{name}_maps.npz", *change, "--relight.yaw", 20)
 
 
 if __name__ == "__main__":
-    main()
+    sys.exit(main())

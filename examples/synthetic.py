@@ -7,15 +7,18 @@ training crops them. Visible differences between the two show what the renderer 
 """
 
 import argparse
+import sys
 from pathlib import Path
 
 import numpy as np
 from numpy.typing import NDArray
 
-from skinnet.images import to_uint8, write_png
+from examples._command import check_picture, run, write_picture
+from skinnet.images import to_uint8
 from train.portraits import find_crops
 from train.synthetic.faces import SyntheticFaces
 
+TARGET = Path("runs/synthetic.png")
 SIDE, ACROSS, DOWN = 128, 8, 8
 GAP = 12
 """White pixels between the pictures and the photographs."""
@@ -43,31 +46,39 @@ def tile(pictures: list[Picture], across: int) -> Picture:
     )
 
 
-def add_photographs(sheet: Picture, folder: Path) -> Picture:
-    """Add a column of the first faces of a folder to a sheet, as many as there are rows."""
-    faces = [crop.photograph for crop in find_crops(folder, SIDE)[0][:DOWN]]
-    column = tile(faces, 1)
+def find_faces(folder: Path) -> Picture:
+    """Find the first faces of a folder, as many as the sheet has rows, in one column."""
+    return tile([crop.photograph for crop in find_crops(folder, SIDE)[0][:DOWN]], 1)
+
+
+def add_column(sheet: Picture, column: Picture) -> Picture:
+    """Add a column of photographs to a sheet."""
     pad = [(0, len(sheet) - len(column)), (GAP, 0), (0, 0)]
     return np.concatenate([sheet, np.pad(column, pad, constant_values=255)], 1)
 
 
-def main() -> None:
-    """Render the sheet and write it."""
+def main(arguments: list[str] | None = None) -> int:
+    """Render the sheet and write it; return 2 for arguments that cannot be used."""
     parser = argparse.ArgumentParser(
         description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter
     )
     parser.add_argument("--ict", help="ICT-FaceKit's model as an .npz")
     parser.add_argument("--beside", type=Path, help="folder of photographs of faces")
     parser.add_argument("--geometry", default="runs/geometry", help="where heads are kept")
-    parser.add_argument("-o", "--output", type=Path, default=Path("runs/synthetic.png"))
-    options = parser.parse_args()
-    picture = tile(render_pictures(options.ict, options.geometry), ACROSS)
-    if options.beside is not None:
-        picture = add_photographs(picture, options.beside)
-    options.output.parent.mkdir(parents=True, exist_ok=True)
-    write_png(options.output, picture)
-    print(f"written: {options.output}")
+    parser.add_argument("-o", "--output", type=Path, default=TARGET)
+    options = parser.parse_args(arguments)
+
+    def draw() -> None:
+        check_picture(options.output, TARGET, "synthetic")
+        if options.beside is not None:
+            column = find_faces(options.beside)
+        picture = tile(render_pictures(options.ict, options.geometry), ACROSS)
+        if options.beside is not None:
+            picture = add_column(picture, column)
+        write_picture(options.output, picture, "synthetic")
+
+    return run(draw)
 
 
 if __name__ == "__main__":
-    main()
+    sys.exit(main())

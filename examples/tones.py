@@ -10,6 +10,7 @@ in brackets marks an edit that leads beyond the fractions of skin.
 """
 
 import argparse
+import sys
 from collections.abc import Sequence
 from pathlib import Path
 
@@ -18,9 +19,10 @@ from numpy.typing import NDArray
 from PIL import Image
 
 from benchmarks.edits import compute_lab, invert_colours, load_colours, make_colour
+from examples._command import check_number, check_picture, run, write_picture
 from examples.lightstage import paint_person
 from skinnet.appearance import PigmentEdit, SkinColour, SkinTexture, edit_texture
-from skinnet.images import resize, write_png
+from skinnet.images import resize
 from skinnet.inference import draw_grid, draw_picture
 from skinnet.mesh import Mesh
 from skinnet.physics import F_BLOOD_RANGE, F_MEL_RANGE
@@ -131,8 +133,8 @@ def _caption(
     return f"({caption})" if beyond else caption
 
 
-def main(arguments: list[str] | None = None) -> None:
-    """Draw the sheet and write it."""
+def main(arguments: list[str] | None = None) -> int:
+    """Draw the sheet and write it; return 2 for arguments that cannot be used."""
     parser = argparse.ArgumentParser(
         description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter
     )
@@ -140,10 +142,15 @@ def main(arguments: list[str] | None = None) -> None:
     parser.add_argument("--texels", type=int, default=512)
     parser.add_argument("--size", type=int, default=300, help="pixels along a side of a face")
     options = parser.parse_args(arguments)
-    options.output.parent.mkdir(parents=True, exist_ok=True)
-    write_png(options.output, draw_sheet(options.texels, options.size))
-    print(f"written: {options.output}")
+
+    def draw() -> None:
+        check_number("texels", options.texels, 4, 8192)
+        check_number("size", options.size, 16, 8192)
+        check_picture(options.output, TARGET, "tones")
+        write_picture(options.output, draw_sheet(options.texels, options.size), "tones")
+
+    return run(draw)
 
 
 if __name__ == "__main__":
-    main()
+    sys.exit(main())

@@ -6,6 +6,7 @@ The wheel carries plain CSV files on the 33 bands, 400 to 720 nm. Each has its s
 line. So neither colour-science nor the raw tables are needed at run time.
 """
 
+import argparse
 import csv
 import sys
 from collections.abc import Iterable, Sequence
@@ -22,11 +23,22 @@ TARGET = Path(__file__).parents[1] / "skinnet" / "physics" / "tables"
 ILLUMINANTS = ("A", "FL2", "FL7", "FL11", "LED-B1", "LED-B3", "LED-B5", "LED-V1")
 
 
-def main(raw: Path) -> None:
-    """Write every table, from a folder of measured tables."""
+MEASURED = ("hemoglobin_250_1000_2nm.csv", "melanin_400_720.csv", "cameras_380_780_5nm.csv")
+
+
+def main(arguments: Sequence[str] | None = None) -> int:
+    """Write every table, from a folder of measured tables; return 2 if one is missing."""
+    parser = argparse.ArgumentParser(description=(__doc__ or "").split("\n")[0])
+    parser.add_argument("raw", type=Path, help="folder of the measured tables")
+    raw: Path = parser.parse_args(arguments).raw
+    missing = [name for name in MEASURED if not (raw / name).is_file()]
+    if missing:
+        print(f"{raw} has no {', '.join(missing)}; name the folder of these.", file=sys.stderr)
+        return 2
     write_light_tables()
     write_pigments(raw)
     write_cameras(raw)
+    return 0
 
 
 def write_light_tables() -> None:
@@ -105,4 +117,4 @@ def write(name: str, source: str, head: Sequence[str], rows: Iterable[Sequence[o
 
 
 if __name__ == "__main__":
-    main(Path(sys.argv[1]))
+    sys.exit(main())

@@ -40,6 +40,22 @@ def _halfway(a: Tensor, b: Tensor) -> Tensor:
     return (a + b) / 2 if b.is_floating_point() else b
 
 
+def _check_output(output: Path, checkpoint: dict[str, Any]) -> None:
+    """Refuse to replace a file that does not hold these weights already."""
+    if not output.exists():
+        return
+    try:
+        state = SkinAutoencoder.from_pretrained(output).make_checkpoint()["state_dict"]
+    except InputError:
+        state = {}
+    new = checkpoint["state_dict"]
+    if state.keys() != new.keys() or not all(torch.equal(state[key], new[key]) for key in new):
+        raise InputError(
+            f"{output} is there already and is not this mean; give another name with -o, or move "
+            "it away."
+        )
+
+
 def main(arguments: list[str] | None = None) -> int:
     """Write the mean; return 2 for input that cannot be used."""
     parser = argparse.ArgumentParser(description=(__doc__ or "").split("\n")[0])
@@ -51,6 +67,7 @@ def main(arguments: list[str] | None = None) -> int:
         if not given.output.parent.is_dir():
             raise InputError(f"{given.output.parent} is not a folder; make it first.")
         checkpoint = average(given.earlier, given.later)
+        _check_output(given.output, checkpoint)
         with write_atomically(given.output) as path:
             torch.save(checkpoint, path)
     except (InputError, OSError) as error:

@@ -49,3 +49,16 @@ def test_other_shapes_and_missing_files_end_in_a_sentence(
         assert main([str(first), str(other), "-o", str(out)]) == 2
         message = capsys.readouterr().err
         assert str(other) in message and "Traceback" not in message and not out.exists()
+
+
+def test_another_file_is_not_replaced(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    first, last, out = (tmp_path / name for name in ("a.ckpt", "b.ckpt", "out.ckpt"))
+    checkpoint(first, 0)
+    checkpoint(last, 1)
+    for taken in (first, last):
+        before = taken.read_bytes()
+        assert main([str(first), str(last), "-o", str(taken)]) == 2
+        assert "is there already and is not this mean" in capsys.readouterr().err
+        assert taken.read_bytes() == before
+    for _ in range(2):
+        assert main([str(first), str(last), "-o", str(out)]) == 0
