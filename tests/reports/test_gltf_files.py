@@ -500,6 +500,26 @@ def test_files_are_found_as_they_are_named(tmp_path: Path, name: str, kind: str)
 
 
 @pytest.mark.parametrize(
+    "uri", ["C:\\scans\\skin.png", "file:///C:/scans/skin.png", "/home/a/skin.png", "maps/Skin.png"]
+)
+def test_files_of_another_machine_are_found_by_their_names_and_said(
+    tmp_path: Path, uri: str
+) -> None:
+    picture = checks()
+    made = textured(picture)
+    made.document["images"] = [{"uri": uri}]
+    path = made.write_gltf(tmp_path / "a.gltf")
+    (tmp_path / "other.png").write_bytes(encode(checks(seed=1)))
+    with pytest.raises(InputError, match=r"names the picture .*--texture"):
+        read_mesh(path)
+    (tmp_path / "skin.png").write_bytes(encode(picture))
+    mesh = read_mesh(path)
+    assert np.array_equal(look_everywhere(mesh), show(picture))
+    assert uri.split("/")[-1] in mesh.notes[0] or repr(uri) in mesh.notes[0]
+    assert "skin.png is taken" in mesh.notes[0]
+
+
+@pytest.mark.parametrize(
     "head", ["data:image/png;base64,", "data:;base64,", "data:image/png;charset=x;base64,", "plain"]
 )
 def test_pictures_in_data_uris(tmp_path: Path, head: str) -> None:

@@ -10,8 +10,8 @@ from typing import Any
 from urllib.parse import unquote_to_bytes
 
 from skinnet.errors import InputError
+from skinnet.mesh._foreign_name import find_foreign_file
 from skinnet.mesh._gltf.extensions import check_required, refuse_compression
-from skinnet.mesh._named_file import find_named_file
 
 _MAGIC = b"glTF"
 _JSON, _BINARY = 0x4E4F534A, 0x004E4942
@@ -19,11 +19,12 @@ _JSON, _BINARY = 0x4E4F534A, 0x004E4942
 
 @dataclass(frozen=True)
 class GltfFile:
-    """An open file: its JSON document, and the binary chunk of a GLB."""
+    """An open file: its JSON document, the binary chunk of a GLB, and notes on what was assumed."""
 
     path: Path
     document: dict[str, Any]
     binary: bytes | None = None
+    notes: list[str] = field(default_factory=list)
     _buffers: dict[int, bytes] = field(default_factory=dict)
 
     def get(self, kind: str, index: Any) -> dict[str, Any]:
@@ -63,18 +64,26 @@ class GltfFile:
                 f"{self.path} names its {kind} by the address {uri}; download it, or export the "
                 "mesh as one .glb file."
             )
-        found = find_named_file(self.path.absolute().parent, uri)
-        if found is None:
-            raise InputError(
-                f"{self.path} names the {kind} {uri!r}, and there is no such file beside it; put "
-                "it there, or export the mesh as one .glb file."
-            )
+        found = self._find(uri, kind)
         try:
             return found.read_bytes()
         except OSError as error:
             raise InputError(
-                f"{found}, a {kind} of {self.path}, cannot be read ({error})."
+                f"{found}, a {kind} of {self.path}, cannot be read ({error}); check the file."
             ) from error
+
+    def _find(self, uri: str, kind: str) -> Path:
+        found = find_foreign_file(uri.encode(), [self.path.absolute().parent])
+        if found is None:
+            more = ", give the picture with --texture" if kind == "picture" else ""
+            raise InputError(
+                f"{self.path} names the {kind} {_shorten(uri)!r}, and there is no such file beside "
+                f"it; put it there{more}, or export the mesh as one .glb file."
+            )
+        if found.moved:
+            note = f"{self.path} names the {kind} {uri!r}, which is not there; "
+            self.notes.append(f"{note}{found.path} is taken, which has its name.")
+        return found.path
 
     def _is_binary(self, number: Any) -> bool:
         return number == 0 and self.binary is not None
@@ -202,4 +211,4 @@ def describe_damage(path: Path, fault: str) -> InputError:
 
 
 def _shorten(name: str) -> str:
-    return name if len(name) < 60 else f"{name[:40]}..."
+    return name if len(name) <= 200 else f"{name[:200]}..."

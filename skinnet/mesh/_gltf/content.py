@@ -65,15 +65,15 @@ def _read_content(file: GltfFile, given: Texture | None, textured: bool) -> Mesh
     solid = [primitive for primitive in primitives if len(primitive.geometry.triangles)]
     if not solid:
         raise refuse_points(file.path, sum(len(one.geometry.vertices) for one in primitives))
-    notes = describe_scene(file)
+    file.notes.extend(describe_scene(file))
     if textured:
         groups = _group(file, solid)
-        parts = [part for group in groups for part in _read_group(file, group, given, notes)]
+        parts = [part for group in groups for part in _read_group(file, group, given)]
     else:
         parts = [_convert_bare(file, primitive) for primitive in solid]
     coloured = any("COLOR_0" in primitive.attributes for primitive in solid)
     named = bool(file.document.get("images")) or coloured
-    return MeshContent(parts, notes, named, np.zeros((0, 3)))
+    return MeshContent(parts, list(dict.fromkeys(file.notes)), named, np.zeros((0, 3)))
 
 
 def _group(file: GltfFile, primitives: list[Primitive]) -> list[_Group]:
@@ -96,22 +96,20 @@ def _read_colours(file: GltfFile, primitive: Primitive) -> Colours:
     return read_attribute(file, primitive, "COLOR_0")[:, :3].clip(0, 1)
 
 
-def _read_group(
-    file: GltfFile, group: _Group, given: Texture | None, notes: list[str]
-) -> list[MeshPart]:
+def _read_group(file: GltfFile, group: _Group, given: Texture | None) -> list[MeshPart]:
     material = group.material
     if not group.varied:
         material = material._replace(factor=material.factor * group.colours[0][0])
     if given is None and material.texture is None:
         if others := list_other_pictures(file, group.number):
-            notes.append(
+            file.notes.append(
                 f"{file.path}: {material.name} has a picture as {' and '.join(others)}, and none "
                 "for its base colour."
             )
-        return _colour_group(file, group, material, notes)
+        return _colour_group(file, group, material)
     if given is not None and not all(_has_uv(one, material) for one in group.primitives):
         return [_convert_bare(file, one, material) for one in group.primitives]
-    picture = read_base_picture(file, material, notes) if given is None else given
+    picture = read_base_picture(file, material) if given is None else given
     mapped = [_map(file, primitive, material) for primitive in group.primitives]
     wraps = _read_wraps(file, material)
     mapped, picture = wrap_texture(mapped, picture, wraps, str(file.path))
@@ -140,9 +138,7 @@ def _bake(group: _Group, mapped: list[Mapped], picture: Texture) -> Texture | No
     return bake_colours(picture, corners, colours)
 
 
-def _colour_group(
-    file: GltfFile, group: _Group, material: Material, notes: list[str]
-) -> list[MeshPart]:
+def _colour_group(file: GltfFile, group: _Group, material: Material) -> list[MeshPart]:
     """Make parts without a picture: their vertex colours as a texture, else one colour."""
     if not group.varied:
         return [_convert_bare(file, one, material) for one in group.primitives]
@@ -151,9 +147,9 @@ def _colour_group(
         plain = to_uint8(linear_to_srgb(np.ones((_BAKED, _BAKED, 3)) * material.factor))
         baked = _bake(group, mapped, plain)
         if baked is not None:
-            notes.append(f"{file.path}: the texture of {material.name} is its vertex colours.")
+            file.notes.append(f"{file.path}: the texture of {material.name} is its vertex colours.")
             return [_convert(each, baked, material) for each in mapped]
-    notes.append(f"{file.path}: the vertex colours of {material.name} are averaged.")
+    file.notes.append(f"{file.path}: the vertex colours of {material.name} are averaged.")
     pairs = zip(group.primitives, group.colours, strict=True)
     return [
         _convert_bare(file, one, material._replace(factor=material.factor * colours.mean(0)))

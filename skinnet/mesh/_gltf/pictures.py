@@ -13,7 +13,7 @@ from skinnet.images._decode import decode_file
 from skinnet.images.picture import Picture
 from skinnet.mesh._gltf.container import GltfFile
 from skinnet.mesh._gltf.materials import Material
-from skinnet.mesh._texture_file import Texture
+from skinnet.mesh._texture_file import Texture, check_colour
 
 _PREFERRED = ("EXT_texture_webp", "EXT_texture_avif")
 _UNREAD = {
@@ -24,10 +24,10 @@ _UNREAD = {
 }
 
 
-def read_base_picture(file: GltfFile, material: Material, notes: list[str]) -> Texture:
+def read_base_picture(file: GltfFile, material: Material) -> Texture:
     """Read the picture of a material's base colour, multiplied with its factor.
 
-    What was assumed of it is added to `notes`.
+    What was assumed of it is added to the file's notes.
 
     Raises:
         InputError: For a picture that is missing, damaged, or of a kind that is not read.
@@ -35,7 +35,7 @@ def read_base_picture(file: GltfFile, material: Material, notes: list[str]) -> T
     texture = file.get("textures", material.texture)
     image = file.get("images", _find_image(file, texture))
     name = f"The picture {_name(image)} of {file.path}"
-    picture = _decode(_read_bytes(file, image), name, material, notes)
+    picture = _decode(_read_bytes(file, image), name, material, file.notes)
     if (material.factor == 1).all():
         return picture
     levels = srgb_to_linear(np.arange(256, dtype=np.uint8))[:, None] * material.factor
@@ -52,7 +52,7 @@ def _find_image(file: GltfFile, texture: dict[str, Any]) -> Any:
     kinds = ", ".join(extensions) or "no picture"
     raise InputError(
         f"{file.path} has its base colour as {kinds}, which is not read; export it with PNG or "
-        "JPEG textures, or give the texture's picture."
+        "JPEG textures, or give the picture with --texture."
     )
 
 
@@ -75,7 +75,7 @@ def _decode(data: bytes, name: str, material: Material, notes: list[str]) -> Tex
     if kind is not None:
         raise InputError(
             f"{name} is {kind}, which is not read; export it with PNG or JPEG textures, or give "
-            "the texture's picture."
+            "the picture with --texture."
         )
     picture = decode_file(BytesIO(data), name, upright=False)
     notes += picture.notes
@@ -87,7 +87,9 @@ def _decode(data: bytes, name: str, material: Material, notes: list[str]) -> Tex
             f"{name} is in {space.name} ({space.known_from}), and is read so; viewers of glTF "
             "take it as sRGB."
         )
-    return replace(picture, alpha=_compute_alpha(picture, material)).srgb
+    colour = replace(picture, alpha=_compute_alpha(picture, material)).srgb
+    check_colour(colour, name)
+    return colour
 
 
 def _compute_alpha(picture: Picture, material: Material) -> NDArray[Any] | None:

@@ -14,12 +14,12 @@ from skinnet.mesh._gltf.materials import read_material
 from skinnet.mesh._gltf.pictures import read_base_picture
 
 
-def read(data: bytes, folder: Path, notes: list[str] | None = None, **material: Any) -> np.ndarray:
+def read(data: bytes, folder: Path, **material: Any) -> np.ndarray:
     made = GltfBuilder()
     made.add_material(made.add_picture(data))
     made.document["materials"][0].update(material)
     file = open_gltf(made.write_glb(folder / "a.glb"))
-    return read_base_picture(file, read_material(file, 0), [] if notes is None else notes)
+    return read_base_picture(file, read_material(file, 0))
 
 
 def test_the_content_decides_the_format(tmp_path: Path) -> None:
@@ -69,3 +69,9 @@ def test_alpha_is_scaled_by_the_factor(tmp_path: Path) -> None:
     found = read(encode(white), tmp_path, alphaMode="MASK", pbrMetallicRoughness=base)
     assert (found == 255).all()
     assert (read(encode(white), tmp_path, pbrMetallicRoughness=base) == 0).all()
+
+
+def test_a_normal_map_is_no_base_colour(tmp_path: Path) -> None:
+    flat = np.full((16, 16, 3), [128, 128, 255], np.uint8)
+    with pytest.raises(InputError, match=r"a\.glb is a normal map by its colours"):
+        read(encode(flat), tmp_path)
