@@ -7,7 +7,6 @@ from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import DTypeLike, NDArray
-from PIL import ImageCms
 
 from skinnet.files import READ_ERRORS
 
@@ -102,6 +101,8 @@ def read_signature(profile: bytes, offset: int) -> str:
 
 def describe_profile(profile: bytes) -> str:
     """The name that a profile gives itself."""
+    from PIL import ImageCms
+
     try:
         parsed = ImageCms.ImageCmsProfile(BytesIO(profile))
         return " ".join(ImageCms.getProfileDescription(parsed).split()) or "unnamed"
