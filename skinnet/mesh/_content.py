@@ -13,12 +13,18 @@ from skinnet.mesh._mesh_parts import (
     read_parts,
 )
 from skinnet.mesh._obj_content import read_obj_content
+from skinnet.mesh._ply_content import read_ply_content
 from skinnet.mesh._seams import merge_coordinates, merge_vertices
 from skinnet.mesh._texture_atlas import pack_atlas
 from skinnet.mesh._texture_file import Texture
 from skinnet.mesh.mesh import Mesh
 
-_GLTF = (".glb", ".gltf")
+_READERS = {
+    ".obj": read_obj_content,
+    ".ply": read_ply_content,
+    ".glb": read_gltf,
+    ".gltf": read_gltf,
+}
 
 
 def read_content(path: Path, given: Texture | None = None, textured: bool = True) -> MeshContent:
@@ -33,15 +39,11 @@ def read_content(path: Path, given: Texture | None = None, textured: bool = True
         InputError: For a file that is missing, of another kind, damaged, or without triangles.
     """
     check_mesh_file(path)
-    if path.suffix.lower() in _GLTF:
-        return read_gltf(path, given, textured)
-    if path.suffix.lower() == ".obj":
-        return read_obj_content(path, given, textured)
-    parts = read_parts(path)
-    if given is not None:
-        parts = [part._replace(texture=given) for part in parts]
-    named = any(part.texture is not None for part in parts)
-    return MeshContent(parts, [], named, np.zeros((0, 3)))
+    reader = _READERS.get(path.suffix.lower())
+    if reader is not None:
+        return reader(path, given, textured)
+    # STL holds no texture coordinates.
+    return MeshContent(read_parts(path), [], False, np.zeros((0, 3)))
 
 
 def join_parts(path: Path, content: MeshContent) -> Mesh:

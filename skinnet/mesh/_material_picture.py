@@ -35,7 +35,8 @@ class PictureReader:
                 f"{statement.describe()} names {path.name}, and there is no map_Kd; the picture of "
                 "the ambient colour is taken for the skin's."
             )
-        if material.opacity is not None and material.opacity < 1:
+        # Programs disagree on whether `Tr 1` is opaque; nobody exports what cannot be seen.
+        if material.opacity is not None and 0 < material.opacity < 1:
             self.add(
                 f"{material.library}: material {material.shown!r} is transparent (d "
                 f"{material.opacity:g}); it is read as opaque."

@@ -126,6 +126,8 @@ def _parse_placement(statement: PictureStatement, lenient: bool) -> Placement:
 
 
 def _add(found: dict[bytes, Material], material: Material) -> None:
+    if material == Material(material.library, b"", None, None, ()):
+        return
     before = found.setdefault(material.name, material)
     one, other = ([each.rest for each in mtl.pictures] for mtl in (before, material))
     if one != other or before.diffuse != material.diffuse:

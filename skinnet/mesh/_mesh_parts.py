@@ -1,19 +1,18 @@
 """Parts of a mesh file as trimesh reads them, each with its own vertices and material."""
 
 import warnings
+from io import BytesIO
 from pathlib import Path
 from typing import Any, NamedTuple
 
 import numpy as np
 import trimesh
 from jaxtyping import Float, Int, UInt8
-from PIL import Image
 from trimesh.visual import TextureVisuals
-from trimesh.visual.material import PBRMaterial
 
 from skinnet.errors import InputError
 from skinnet.files import READ_ERRORS
-from skinnet.mesh._texture_file import Texture, decode_texture
+from skinnet.mesh._texture_file import Texture
 
 MESH_SUFFIXES = (".obj", ".ply", ".glb", ".gltf", ".stl")
 """Suffixes of the mesh files that can be read."""
@@ -58,7 +57,16 @@ def read_parts(path: Path) -> list[MeshPart]:
         InputError: For a file that is missing, of another kind, damaged, or without triangles.
     """
     check_mesh_file(path)
-    scene = _load_scene(path)
+    return [convert_part(path, each) for each in load_geometries(path)]
+
+
+def load_geometries(path: Path, content: BytesIO | None = None) -> list[Any]:
+    """Load trimesh's meshes in a file, or in `content` in its place, in the file's frame.
+
+    Raises:
+        InputError: If the file is damaged, or has no triangles.
+    """
+    scene = _load_scene(path, content)
     try:
         geometries = [_place(scene, node) for node in scene.graph.nodes_geometry]
     except READ_ERRORS as error:
@@ -66,7 +74,7 @@ def read_parts(path: Path) -> list[MeshPart]:
     solid = [each for each in geometries if isinstance(each, trimesh.Trimesh) and len(each.faces)]
     if not solid:
         raise refuse_points(path, sum(len(each.vertices) for each in geometries))
-    return [_convert_part(path, each) for each in solid]
+    return solid
 
 
 def concatenate(geometries: list[MeshGeometry]) -> MeshGeometry:
@@ -103,11 +111,12 @@ def refuse_points(path: Path, points: int) -> InputError:
     return InputError(f"{path} has no faces, only {points:,} points; export it as a triangle mesh.")
 
 
-def _load_scene(path: Path) -> Any:
+def _load_scene(path: Path, content: BytesIO | None) -> Any:
+    kind = path.suffix.lower()[1:]
     try:
         with warnings.catch_warnings():
             warnings.simplefilter("ignore")
-            return trimesh.load_scene(path, file_type=path.suffix.lower()[1:], process=False)
+            return trimesh.load_scene(content or path, file_type=kind, process=False)
     except READ_ERRORS as error:
         raise _unreadable(path, error) from error
 
@@ -120,7 +129,8 @@ def _place(scene: Any, node: str) -> Any:
     return geometry.copy().apply_transform(transform)
 
 
-def _convert_part(path: Path, geometry: Any) -> MeshPart:
+def convert_part(path: Path, geometry: Any) -> MeshPart:
+    """Convert a mesh of trimesh to a part, without its picture."""
     mesh = MeshGeometry(
         np.asarray(geometry.vertices, np.float64), np.asarray(geometry.faces, np.int64)
     )
@@ -130,15 +140,7 @@ def _convert_part(path: Path, geometry: Any) -> MeshPart:
         return MeshPart(mesh, None, None, _rgb(visual.main_color))
     known = visual.uv is not None and len(visual.uv) == len(mesh.vertices)
     uv = np.asarray(visual.uv, np.float64)[:, :2] if known else None
-    return MeshPart(mesh, uv, _texture(path, visual.material), _rgb(visual.material.main_color))
-
-
-def _texture(path: Path, material: Any) -> Texture | None:
-    image = material.baseColorTexture if isinstance(material, PBRMaterial) else material.image
-    # For a material without a picture trimesh makes one of four pixels, which has no file format.
-    if not isinstance(image, Image.Image) or image.format is None:
-        return None
-    return decode_texture(image, f"The texture of {path}")
+    return MeshPart(mesh, uv, None, _rgb(visual.material.main_color))
 
 
 def _rgb(colour: Any) -> UInt8[np.ndarray, "3"]:

@@ -220,6 +220,11 @@ def _read_corners(lines: Lines, kinds: _Kinds) -> Corners:
         *(lines, kinds.coordinate, at[on_line[owner[second]]], values[second]),
         "texture coordinate",
     )
+    known = np.bincount(on_line[coordinate >= 0], minlength=len(at))
+    some = (known > 0) & (known < counts)
+    if some.any():
+        line = int(at[np.argmax(some)])
+        raise lines.fault(line, "has a face with texture coordinates at some of its corners only")
     return Corners(vertex, coordinate, counts, at)
 
 

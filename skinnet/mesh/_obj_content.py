@@ -94,22 +94,27 @@ def _add_pictures(
 ) -> list[MeshPart]:
     reader = PictureReader(path.absolute().parent, notes)
     parts = [_add_picture(path, each, reader) for each in groups]
-    plain = [
-        (each.material, len(part.geometry.triangles))
-        for each, part in zip(groups, parts, strict=True)
-        if part.texture is None
-    ]
+    pairs = zip(groups, parts, strict=True)
+    plain = [each for each, part in pairs if part.texture is None]
     faults = _describe_faults(path, library)
     if len(plain) == len(parts):
-        notes += faults + describe_other_pictures(path, [each.material for each in groups])
+        others = describe_other_pictures(path, [each.material for each in groups])
+        if library.names_pictures and not faults + others:
+            others = [f"{path} has faces without a picture only; give it with --texture."]
+        notes += faults + others
         return parts
     if library.undefined:
         raise InputError(" ".join(faults))
-    for material, count in plain:
-        name = "no material" if material is None else f"material {material.shown!r}"
-        what = "grey" if material is None or material.diffuse is None else "the material's colour"
-        notes.append(f"{path}: {count:,} triangles of {name} have no picture, and are {what}.")
+    notes += [_describe_plain(path, each) for each in plain]
     return parts
+
+
+def _describe_plain(path: Path, group: _Group) -> str:
+    material, count = group.material, len(group.part.geometry.triangles)
+    name = "no material" if material is None else f"material {material.shown!r}"
+    what = "grey" if material is None or material.diffuse is None else "the material's colour"
+    lack = "no texture coordinates" if group.part.uv is None else "no picture"
+    return f"{path}: {count:,} triangles of {name} have {lack}, and are {what}."
 
 
 def _add_picture(path: Path, group: _Group, reader: PictureReader) -> MeshPart:

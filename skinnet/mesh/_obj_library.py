@@ -90,7 +90,10 @@ def _read_beside(
     for name in (f"{path.stem}.mtl", f"{path.name}.mtl"):
         found = find_named_file(path.absolute().parent, name)
         if found is not None:
-            notes.append(f"{path}: its materials are taken from {found.name}, which has its name.")
+            notes.append(
+                f"{path}: materials that are not in files it names are taken from {found.name}, "
+                "which has its name."
+            )
             return {key: each for key, each in read_materials(found).items() if key not in known}
     return {}
 

@@ -107,6 +107,8 @@ def parse_numbers(lines: Lines, chosen: Bool[np.ndarray, "lines"], length: int) 
 
 def convert(content: bytes, kind: type) -> np.ndarray:
     """Convert words to numbers; none, or those before it, if a word is no number."""
+    if content.isspace():
+        return np.zeros(0, kind)
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", DeprecationWarning)  # what an older NumPy gives
         try:

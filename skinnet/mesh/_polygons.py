@@ -34,12 +34,13 @@ def _fan(count: int) -> Int[np.ndarray, "triangles 3"]:
 
 
 def _find_concave(corners: Float[np.ndarray, "polygons n 3"]) -> Bool[np.ndarray, "polygons"]:
-    """Find polygons in which a triangle of the fan is turned against the polygon's normal."""
+    """Find polygons in which a triangle of the fan has no area, or is turned against the others."""
     arms = corners[:, 1:] - corners[:, :1]
     normals = np.cross(arms[:, :-1], arms[:, 1:])
     whole = normals.sum(1)
     along = np.einsum("pti,pi->pt", normals, whole)
-    return np.asarray((along < -1e-9 * (whole**2).sum(1)[:, None]).any(1))
+    size = (whole**2).sum(1)
+    return np.asarray((along <= 1e-9 * size[:, None]).any(1) & (size > 0))
 
 
 def _clip_ears(corners: Float[np.ndarray, "n 3"]) -> Int[np.ndarray, "triangles 3"]:

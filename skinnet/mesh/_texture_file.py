@@ -84,10 +84,3 @@ def check_colour(texture: Texture, name: str) -> None:
             f"{name} is a normal map by its colours, and not the skin's colour; give the picture "
             "of its colour with --texture."
         )
-
-
-def decode_texture(image: Image.Image, name: str) -> Texture:
-    """Decode an open image as uint8 sRGB; errors call it `name`."""
-    with warnings.catch_warnings():
-        warnings.simplefilter("ignore")
-        return decode_image(image, name, upright=False).srgb

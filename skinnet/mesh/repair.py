@@ -244,8 +244,8 @@ def _check_texture(mesh: Mesh) -> RepairedMesh:
         fault = "texture coordinates that are NaN or infinite; export it again"
     elif texture is None:
         fault = (
-            "no texture: its material names no picture that exists, and its folder has none, or "
-            "several; give the picture's path"
+            "no texture: its material names no picture, and none beside it has the mesh's name; "
+            "give the picture with --texture"
         )
     elif min(texture.shape[:2]) < PLACEHOLDER:
         size = f"{texture.shape[1]} x {texture.shape[0]}"
