@@ -9,6 +9,7 @@ from PIL import Image
 from skinnet.errors import InputError
 from skinnet.files import READ_ERRORS
 from skinnet.images._colour_decision import decide_colour_space
+from skinnet.images._frames import describe_frames
 from skinnet.images._kind import HEIF, OTHER, PICTURE, identify
 from skinnet.images._metadata import keep_metadata
 from skinnet.images._pixels import read_pixels
@@ -79,7 +80,7 @@ def _decode(image: Image.Image, name: str, data: bytes, upright: bool) -> Pictur
         space,
         image.format or "",
         keep_metadata(image, data),
-        (*notes, *_count_frames(image, name)),
+        (*notes, *describe_frames(image, data, name)),
     )
     _ = picture.srgb  # damage that the profile shows is damage of the file
     return picture
@@ -95,11 +96,6 @@ def _refuse_raw(image: Image.Image, data: bytes, name: str) -> None:
             f"{name} is a RAW file, or one that begins with a preview; develop it to JPEG, PNG or "
             "TIFF in sRGB first."
         )
-
-
-def _count_frames(image: Image.Image, name: str) -> tuple[str, ...]:
-    frames = getattr(image, "n_frames", 1)
-    return () if frames == 1 else (f"{name} holds {frames} pictures; the first is read.",)
 
 
 def _open(data: bytes, name: str) -> Image.Image:
@@ -129,12 +125,13 @@ def _open_heif(data: bytes, name: str) -> Image.Image:
             "or save it as JPEG."
         ) from error
     try:
-        image: Image.Image = pillow_heif.open_heif(BytesIO(data)).to_pillow()
+        container = pillow_heif.open_heif(BytesIO(data))
+        image: Image.Image = container.to_pillow()
     except _DAMAGES as error:
         raise InputError(
             f"{name} is damaged or cut short ({error}); copy or download it again."
         ) from error
-    image.format = "HEIF"
+    image.format, image.n_frames = "HEIF", len(container)  # type: ignore[attr-defined]
     return image
 
 

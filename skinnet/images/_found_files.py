@@ -13,6 +13,10 @@ from skinnet.images._mark import read_mark, read_summary
 SPECIAL = Kind("a pipe, socket or device", "pipes, sockets or devices", "give a file")
 BROKEN_LINK = Kind("a broken link", "broken links", "repair or remove it")
 
+NOT_DOWNLOADED = Kind(
+    "a file that is only in iCloud", "files that are only in iCloud", "download it"
+)
+
 _LITTER = frozenset(
     (
         *("thumbs.db", "ehthumbs.db", "desktop.ini", "icon\r", "__macosx", "@eadir", "#recycle"),
@@ -26,6 +30,8 @@ _MOST_COUNTED, _LARGEST_SUMMARY = 5000, 1_000_000
 
 def look_at(path: str) -> Kind | None:
     """Find the kind of a file; None if it promises a picture and may not be opened."""
+    if is_placeholder(os.path.basename(path)):
+        return NOT_DOWNLOADED
     try:
         if not stat.S_ISREG(os.stat(path).st_mode):
             return SPECIAL
@@ -50,7 +56,14 @@ def get_identity(path: str | Path) -> object:
 
 def is_litter(name: str) -> bool:
     """Whether a name is hidden, or one that file managers leave behind."""
+    if is_placeholder(name):
+        return False
     return name.startswith(".") or name.casefold() in _LITTER
+
+
+def is_placeholder(name: str) -> bool:
+    """Whether macOS has left a file of this name for one that is only in iCloud."""
+    return name.startswith(".") and name.endswith(".icloud")
 
 
 def is_summary(path: str) -> bool:

@@ -9,8 +9,11 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+import tifffile
 from flat_decomposer import SKIN, WALL, names, paint, read_melanin, run, save
 from other_files import KINDS, NO_PICTURES, RAW, write_pages
+
+from skinnet.images import read_picture
 
 __all__ = ["run"]
 Run = Callable[..., tuple[int, str, str]]
@@ -354,6 +357,60 @@ def test_frames_that_are_left_out_are_said(run: Run, tmp_path: Path, suffix: str
     summary = json.loads(out)
     assert any("3 pictures" in note for note in summary["notes"])
     assert summary["maps"]["melanin"]["mean"] == pytest.approx(0.2, abs=0.005)
+
+
+def test_a_file_that_is_only_in_icloud_is_passed_over_by_name(run: Run, tmp_path: Path) -> None:
+    save(tmp_path / "g" / "a.png")
+    (tmp_path / "g" / ".IMG_1.HEIC.icloud").write_bytes(b"bplist00")
+    code, _, err = run("predict", tmp_path / "g", "-o", tmp_path / "out")
+    assert code == 0 and "1 file that is only in iCloud (.IMG_1.HEIC.icloud)" in err
+
+
+@pytest.mark.parametrize(
+    ("kinds", "text", "count"),
+    [
+        (("Baseline", "Disparity"), b"", 2),
+        (("Baseline", "Undefined", "Undefined"), b"", 3),
+        (("Baseline", "Large Thumbnail (VGA Equivalent)"), b"", 1),
+        (("Baseline", "Large Thumbnail (Full HD Equivalent)", "Panorama"), b"", 2),
+        (("Baseline", "Undefined"), b"http://ns.adobe.com/hdr-gain-map/1.0/", 1),
+        (("Baseline", "Undefined"), b"http://ns.apple.com/HDRGainMap/1.0/", 1),
+    ],
+)
+def test_previews_and_gain_maps_of_jpegs_are_no_pictures(
+    tmp_path: Path, kinds: tuple[str, ...], text: bytes, count: int
+) -> None:
+    """Cameras and telephones put them into every photograph."""
+    codes = {
+        **{"Baseline": 0x030000, "Undefined": 0, "Disparity": 0x020002, "Panorama": 0x020001},
+        "Large Thumbnail (VGA Equivalent)": 0x010001,
+        "Large Thumbnail (Full HD Equivalent)": 0x010002,
+    }
+    path = save(
+        tmp_path / "a.jpg",
+        format_="MPO",
+        save_all=True,
+        append_images=[paint(DARK)] * (len(kinds) - 1),
+    )
+    data = bytearray(path.read_bytes())
+    head = data.index(b"MPF\0II*\0") + 4
+    tag = data.index(b"\x02\xb0", head)  # of the entries, 16 bytes each
+    start = head + int.from_bytes(data[tag + 8 : tag + 12], "little")
+    for number, kind in enumerate(kinds):
+        place = start + 16 * number
+        data[place : place + 4] = codes[kind].to_bytes(4, "little")
+    path.write_bytes(data + text)
+    notes = read_picture(path).notes
+    assert notes == ((f"{path} holds {count} pictures; the first is read.",) if count > 1 else ())
+
+
+def test_pages_of_reduced_size_are_no_pictures(tmp_path: Path) -> None:
+    path, first = tmp_path / "a.tif", np.array(paint())
+    with tifffile.TiffWriter(path) as file:
+        for number in range(3):
+            file.write(first[:: number + 1], photometric="rgb", subfiletype=int(number > 0))
+    assert read_picture(path).notes == ()
+    np.testing.assert_array_equal(read_picture(path).srgb, first)
 
 
 def test_the_end_of_a_run_counts(run: Run, tmp_path: Path) -> None:
