@@ -5,7 +5,7 @@ from io import BytesIO
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
+from jaxtyping import Float
 
 from skinnet.errors import InputError
 from skinnet.images import linear_to_srgb, srgb_to_linear, to_uint8
@@ -35,12 +35,29 @@ def read_base_picture(file: GltfFile, material: Material) -> Texture:
     texture = file.get("textures", material.texture)
     image = file.get("images", _find_image(file, texture))
     name = f"The picture {_name(image)} of {file.path}"
-    picture = _decode(_read_bytes(file, image), name, material, file.notes)
-    if (material.factor == 1).all():
-        return picture
-    levels = srgb_to_linear(np.arange(256, dtype=np.uint8))[:, None] * material.factor
+    picture = _decode(_read_bytes(file, image), name, file.notes)
+    stored = replace(picture, alpha=None).srgb
+    check_colour(stored, name)
+    colour = _multiply(stored, material.factor)
+    if material.cutoff == 0 and material.alpha < 1:
+        file.notes.append(
+            f"{file.path}: {material.name} is transparent (alpha {material.alpha:.3g}); it is read "
+            "as opaque."
+        )
+    alpha = _compute_alpha(picture, material)
+    if alpha is None or alpha.min() == 1:
+        return colour
+    file.notes.append(f"{name} is transparent in places; these are blended with white.")
+    return to_uint8(1 + (colour / 255 - 1) * alpha[..., None])
+
+
+def _multiply(texture: Texture, factor: Float[np.ndarray, "3"]) -> Texture:
+    """Multiply sRGB with a linear factor."""
+    if (factor == 1).all():
+        return texture
+    levels = srgb_to_linear(np.arange(256, dtype=np.uint8))[:, None] * factor
     table = to_uint8(linear_to_srgb(levels))
-    return np.stack([table[picture[..., k], k] for k in range(3)], -1)
+    return np.stack([table[texture[..., k], k] for k in range(3)], -1)
 
 
 def _find_image(file: GltfFile, texture: dict[str, Any]) -> Any:
@@ -70,7 +87,7 @@ def _read_bytes(file: GltfFile, image: dict[str, Any]) -> bytes:
     return file.read_view(image["bufferView"])
 
 
-def _decode(data: bytes, name: str, material: Material, notes: list[str]) -> Texture:
+def _decode(data: bytes, name: str, notes: list[str]) -> Picture:
     kind = next((kind for magic, kind in _UNREAD.items() if data.startswith(magic)), None)
     if kind is not None:
         raise InputError(
@@ -87,21 +104,14 @@ def _decode(data: bytes, name: str, material: Material, notes: list[str]) -> Tex
             f"{name} is in {space.name} ({space.known_from}), and is read so; viewers of glTF "
             "take it as sRGB."
         )
-    colour = replace(picture, alpha=_compute_alpha(picture, material)).srgb
-    check_colour(colour, name)
-    return colour
+    return picture
 
 
-def _compute_alpha(picture: Picture, material: Material) -> NDArray[Any] | None:
-    """Drop the alpha that a material ignores; cut off or scale the alpha that it uses."""
-    if material.cutoff < 0 or (picture.alpha is None and material.alpha == 1):
+def _compute_alpha(picture: Picture, material: Material) -> Float[np.ndarray, "_ _"] | None:
+    """Compute the opacity that the material makes of a picture's alpha; None if it ignores it."""
+    if material.cutoff < 0 or picture.alpha is None:
         return None
-    dtype = picture.pixels.dtype
-    top = np.iinfo(dtype).max
-    stored = (
-        np.full(picture.pixels.shape[:2], top, dtype) if picture.alpha is None else picture.alpha
-    )
-    alpha = stored * material.alpha
-    if material.cutoff > 0:
-        alpha = np.where(alpha >= top * material.cutoff, top, 0)
-    return np.rint(alpha).astype(dtype)
+    alpha = picture.alpha / np.iinfo(picture.alpha.dtype).max
+    if material.cutoff == 0:
+        return alpha
+    return (alpha * material.alpha >= material.cutoff).astype(np.float64)

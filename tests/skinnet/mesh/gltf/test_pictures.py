@@ -61,14 +61,16 @@ def test_what_is_no_picture_is_named(tmp_path: Path, data: bytes, fault: str) ->
         read(data, tmp_path)
 
 
-def test_alpha_is_scaled_by_the_factor(tmp_path: Path) -> None:
-    white = np.zeros((4, 4, 4), np.uint8) + np.uint8([0, 0, 0, 128])
-    base = {"baseColorTexture": {"index": 0}, "baseColorFactor": [1, 1, 1, 0.5]}
-    found = read(encode(white), tmp_path, alphaMode="BLEND", pbrMetallicRoughness=base)
-    assert np.abs(found - 191.0).max() <= 1
-    found = read(encode(white), tmp_path, alphaMode="MASK", pbrMetallicRoughness=base)
+def test_alpha_is_blended_after_the_factor(tmp_path: Path) -> None:
+    half = np.zeros((4, 4, 4), np.uint8) + np.array([255, 0, 0, 51], np.uint8)
+    base = {"baseColorTexture": {"index": 0}, "baseColorFactor": [0, 1, 1, 0.5]}
+    found = read(encode(half), tmp_path, alphaMode="BLEND", pbrMetallicRoughness=base)
+    assert (found == 204).all()
+    found = read(encode(half), tmp_path, alphaMode="MASK", pbrMetallicRoughness=base)
     assert (found == 255).all()
-    assert (read(encode(white), tmp_path, pbrMetallicRoughness=base) == 0).all()
+    shown = {"alphaMode": "MASK", "alphaCutoff": 0.1, "pbrMetallicRoughness": base}
+    assert (read(encode(half), tmp_path, **shown) == 0).all()
+    assert (read(encode(half), tmp_path, pbrMetallicRoughness=base) == 0).all()
 
 
 def test_a_normal_map_is_no_base_colour(tmp_path: Path) -> None:
