@@ -7,7 +7,8 @@ import struct
 import warnings
 import zlib
 from collections.abc import Iterator
-from io import BufferedIOBase
+from importlib.util import find_spec
+from io import BufferedIOBase, BytesIO
 from pathlib import Path
 from typing import Any, BinaryIO, NamedTuple
 
@@ -16,6 +17,7 @@ from PIL import Image
 from skinnet._version import __version__
 from skinnet.files import READ_ERRORS
 from skinnet.images._decode import PHOTO_FORMATS
+from skinnet.images._kind import is_heif
 
 PROCESSING_SOFTWARE = 0x000B
 """EXIF tag that holds the line of an edited photograph's mark."""
@@ -166,6 +168,9 @@ def _list_chunks(file: BinaryIO | BufferedIOBase) -> Iterator[tuple[bytes, bytes
 
 def _read_exif(file: BinaryIO | BufferedIOBase) -> Mark | None:
     file.seek(0)
+    if is_heif(file.read(64)):
+        return _read_heif(file)
+    file.seek(0)
     Image.init()
     formats = [known for known in PHOTO_FORMATS if known in Image.OPEN]
     with warnings.catch_warnings():
@@ -175,6 +180,17 @@ def _read_exif(file: BinaryIO | BufferedIOBase) -> Mark | None:
             return _find_line(image.getexif()) or parse_mark(image.info.get("comment"))
         except (Image.DecompressionBombError, *READ_ERRORS):
             return None
+
+
+def _read_heif(file: BinaryIO | BufferedIOBase) -> Mark | None:
+    if find_spec("pillow_heif") is None:
+        return None
+    import pillow_heif
+
+    file.seek(0)
+    exif = Image.Exif()
+    exif.load(pillow_heif.open_heif(BytesIO(file.read())).info.get("exif") or b"")
+    return _find_line(exif)
 
 
 def _find_line(exif: Image.Exif) -> Mark | None:

@@ -8,7 +8,7 @@ from collections.abc import Callable
 from pathlib import Path
 
 import pytest
-from flat_decomposer import SKIN, names, read_melanin, run, save, strip_marks
+from flat_decomposer import SKIN, names, paint, read_melanin, run, save, strip_marks
 from PIL import Image, PngImagePlugin
 
 from skinnet import __version__
@@ -141,6 +141,26 @@ def test_an_edited_photograph_is_read_only_where_it_alone_is_named(
     assert any("was edited by skinnet" in note for note in notes)
     code, _, err = run("edit", edited)
     assert code == 0 and "was edited by skinnet" in err
+
+
+@pytest.mark.parametrize(
+    "format_", ["JPEG", "PNG", "TIFF", "WEBP", "AVIF", "JPEG2000", "BMP", "GIF", "PPM", "HEIF"]
+)
+def test_edits_in_every_format_are_known(run: Run, tmp_path: Path, format_: str) -> None:
+    if format_ == "HEIF":
+        pillow_heif = pytest.importorskip("pillow_heif")
+        pillow_heif.from_pillow(paint().resize((64, 32), 0)).save(tmp_path / "a.heic")
+    else:
+        save(tmp_path / "a", format_=format_)
+    (photo,) = tmp_path.iterdir()
+    assert run("edit", photo)[0] == 0
+    (edited,) = (path for path in tmp_path.iterdir() if path != photo)
+    renamed = edited.rename(tmp_path / "b")
+    code, _, err = run("predict", tmp_path, "-o", tmp_path / "out")
+    assert code == 0 and "1 read, 1 passed over" in err and "1 result of skinnet (b)" in err
+    assert list(read_melanin(tmp_path / "out")) == ["a.json"]
+    assert run("edit", photo, "-o", edited)[0] == run("edit", photo, "-o", edited)[0] == 0
+    assert renamed.read_bytes() == edited.read_bytes()
 
 
 def test_results_say_who_wrote_them(run: Run, tmp_path: Path) -> None:
