@@ -287,9 +287,9 @@ def _read(found: "Found") -> tuple["Source", "Picture", tuple[str, ...]]:
 
     if found.path != _STDIN:
         path = Path(found.path)
-        picture = read_picture(path)
+        picture = read_picture(path, found.path)
         return Source(found.path, path, compute_digest(path)), picture, found.notes
-    name, data = "standard input", sys.stdin.buffer.read()
+    name, data = "standard input", b"" if sys.stdin is None else sys.stdin.buffer.read()
     notes = check_mark(read_mark(BytesIO(data)), name)
     picture = read_picture(BytesIO(data), name)
     return Source(name, None, hashlib.sha256(data).hexdigest()), picture, notes

@@ -25,7 +25,7 @@ _LITTER = frozenset(
 )
 """Files and folders that file managers leave behind, with thumbnails of photographs in some."""
 
-_MOST_COUNTED, _LARGEST_SUMMARY = 5000, 1_000_000
+_MOST_COUNTED = 5000
 
 
 def look_at(path: str) -> Kind | None:
@@ -68,9 +68,7 @@ def is_placeholder(name: str) -> bool:
 
 def is_summary(path: str) -> bool:
     """Whether a file is a summary that skinnet wrote."""
-    if not path.lower().endswith(".json") or os.path.getsize(path) > _LARGEST_SUMMARY:
-        return False
-    return read_summary(Path(path)) is not None
+    return path.lower().endswith(".json") and read_summary(Path(path)) is not None
 
 
 def count_below(folders: Iterable[Path]) -> tuple[int, int, bool]:

@@ -36,7 +36,7 @@ _SCAN_PICTURES = {
 """Pictures of scans by the end of their names, and the archives that lie beside them."""
 
 _PNG = b"\x89PNG\r\n\x1a\n"
-_TAIL, _LONGEST_TEXT = 256, 4096
+_TAIL, _LONGEST_TEXT, _LARGEST_SUMMARY = 256, 4096, 1_000_000
 _Source = str | Path | BinaryIO | BufferedIOBase
 
 
@@ -83,6 +83,8 @@ def read_mark(source: _Source) -> Mark | None:
     try:
         if not isinstance(source, str | Path):
             return _read_and_rewind(source)
+        if not Path(source).is_file():  # a pipe would wait for its writer
+            return None
         with open(source, "rb") as file:
             return _read_open(file) or _read_neighbour(Path(source))
     except READ_ERRORS:
@@ -92,6 +94,8 @@ def read_mark(source: _Source) -> Mark | None:
 def read_summary(path: Path) -> dict[str, Any] | None:
     """Read a JSON file if it is a summary that `skinnet predict` wrote, of any version."""
     try:
+        if not path.is_file() or path.stat().st_size > _LARGEST_SUMMARY:
+            return None
         summary = json.loads(path.read_bytes())
     except READ_ERRORS:
         return None

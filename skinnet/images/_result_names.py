@@ -8,6 +8,8 @@ from contextlib import contextmanager, suppress
 from pathlib import Path
 from typing import Any
 
+from skinnet.errors import InputError
+
 Belongs = Callable[[Path], bool]
 """Whether an existing file is a result of the same input, so that it may be replaced."""
 
@@ -55,9 +57,16 @@ def lock_folder(folder: Path) -> Iterator[None]:
 
 
 def compute_digest(path: Path) -> str:
-    """Compute the SHA-256 of a file, in hexadecimals."""
-    with path.open("rb") as file:
-        return hashlib.file_digest(file, "sha256").hexdigest()
+    """Compute the SHA-256 of a file, in hexadecimals.
+
+    Raises:
+        InputError: The file cannot be read.
+    """
+    try:
+        with path.open("rb") as file:
+            return hashlib.file_digest(file, "sha256").hexdigest()
+    except OSError as error:
+        raise InputError(f"{path} cannot be read ({error.strerror}); check the path.") from error
 
 
 def describe_input(path: Path | None, digest: str, folder: Path) -> dict[str, str | None]:
@@ -75,7 +84,7 @@ def describe_input(path: Path | None, digest: str, folder: Path) -> dict[str, st
         return {"path": None, "sha256": digest}
     whole = os.path.abspath(path)
     try:
-        whole = os.path.relpath(whole, os.path.abspath(folder))
+        whole = os.path.relpath(whole, os.path.realpath(folder))
     except ValueError:  # another drive of Windows
         pass
     return {"path": Path(whole).as_posix(), "sha256": digest}

@@ -1,4 +1,7 @@
+import os
+from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
+from time import sleep
 
 import numpy as np
 import pytest
@@ -55,3 +58,28 @@ def test_targets_of_edits(tmp_path: Path) -> None:
 def test_a_folder_that_cannot_be_locked_is_used_all_the_same(tmp_path: Path) -> None:
     with lock_folder(tmp_path / "absent"), lock_folder(tmp_path):
         assert choose_result_stem(tmp_path, Source("a", None, ""), ENDS) == "stdin"
+
+
+def test_two_processes_do_not_choose_the_same_name(tmp_path: Path) -> None:
+    sources = [make_source(save(tmp_path / str(i) / "a.png", (i, 40, 20))) for i in range(8)]
+    out = tmp_path / "out"
+    out.mkdir()
+
+    def write(source: Source) -> None:
+        with lock_folder(out):
+            stem = choose_result_stem(out, source, (".json",))
+            sleep(0.01)
+            (out / f"{stem}.json").write_text(source.digest)
+
+    with ThreadPoolExecutor(8) as pool:
+        list(pool.map(write, sources))
+    assert {path.read_text() for path in out.iterdir()} == {source.digest for source in sources}
+
+
+@pytest.mark.parametrize("name", ["a.json", "a_offset_r.png", "a_edited.png"])
+def test_a_pipe_of_such_a_name_is_not_waited_for(tmp_path: Path, name: str) -> None:
+    source = make_source(save(tmp_path / "a.png"))
+    os.mkfifo(tmp_path / name)
+    assert choose_result_stem(tmp_path, source, ENDS) == ("a" if "edited" in name else "a-2")
+    numbered = "a_edited-2.png" if "edited" in name else "a_edited.png"
+    assert choose_edit_target(source, None, ".png").name == numbered
