@@ -223,6 +223,18 @@ def test_the_columns_of_a_camera_have_names(
     assert (np.diff(BANDS @ found) < -40).all()
 
 
+@pytest.mark.parametrize(("step", "error"), [(0.5, 4e-4), (1, 1.5e-3), (2, 3e-3), (5, 0.03)])
+def test_a_camera_is_averaged_over_the_bands(tmp_path: Path, step: float, error: float) -> None:
+    """Narrow filters, against the exact mean of a Gaussian over each band."""
+    wavelength = np.arange(380, 780 + step / 2, step)
+    centres, sigma = np.array([601.5, 538.0, 466.0]), 6.0
+    curves = np.exp(-(((wavelength[:, None] - centres) / sigma) ** 2) / 2)
+    found = load_camera(tabulate(tmp_path / "camera.csv", wavelength, *curves.T)).numpy()
+    edges = np.append(BANDS - 5, 725.0)
+    exact = np.diff(erf((edges[:, None] - centres) / (sigma * 2**0.5)), axis=0)
+    np.testing.assert_allclose(found, exact / exact.sum(0), atol=error)
+
+
 @pytest.mark.parametrize(
     ("heading", "order", "words"),
     [
