@@ -14,8 +14,8 @@ from numpy.typing import NDArray
 from skinnet._version import __version__
 from skinnet.appearance._principal import PrincipalComponents
 from skinnet.appearance.colour import SkinColour
-from skinnet.errors import InputError
-from skinnet.files import write_atomically
+from skinnet.errors import InputError, _explain_format
+from skinnet.files import _describe_content, write_atomically
 
 MODEL_FORMAT = 1
 """Version of the layout of these files."""
@@ -117,17 +117,19 @@ def read_arrays(
 
 def make_damage_error(path: Path) -> InputError:
     """Make the error for a file that is damaged or of another kind."""
-    return InputError(
-        f"{path} is not a complete file of skinnet's (damaged, cut short, or another kind); make "
-        "it again."
-    )
+    content = _describe_content(path) if path.is_file() else None
+    what = "damaged, cut short, or another kind"
+    if content is not None and content[0] != "an .npz archive of arrays":
+        what = "; ".join(filter(None, (f"it is {content[0]}", content[1])))
+    return InputError(f"{path} is not a complete file of skinnet's ({what}); make it again.")
 
 
 def _check_header(path: Path, kind: str, header: dict[str, Any]) -> None:
     if header["format"] != MODEL_FORMAT:
         raise InputError(
             f"{path} has format {header['format']}, and this skinnet reads format {MODEL_FORMAT}; "
-            "make it again, or install the skinnet that made it."
+            "make it again with this version, or use the one that wrote it "
+            f"({_explain_format(header['format'], MODEL_FORMAT, header.get('skinnet'))})."
         )
     if header["kind"] != kind:
         raise InputError(f"{path} is a {header['kind']}, and a {kind} is needed.")

@@ -14,9 +14,12 @@ from numpy.typing import NDArray
 from skinnet.appearance._feature_blocks import compute_block_width
 from skinnet.appearance.colour import CHANNELS, SkinColour
 from skinnet.appearance.skin_texture import SkinTexture
-from skinnet.errors import InputError
+from skinnet.errors import InputError, _explain_format
 
 _FEATURES, _MASKS, _STATE = "features.npy", "masks.npy", "stack.json"
+
+_STACK_FORMAT = 1
+"""Version of the folder's layout."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -219,7 +222,14 @@ def _read_state(folder: Path) -> dict[str, Any]:
         state = json.loads((folder / _STATE).read_text(encoding="utf-8"))
     except (OSError, ValueError) as error:
         raise InputError(f"{folder} holds no stack of subjects ({error}).") from error
-    return state if isinstance(state, dict) else {}
+    state = state if isinstance(state, dict) else {}
+    if (found := state.get("format", _STACK_FORMAT)) != _STACK_FORMAT:
+        raise InputError(
+            f"{folder} holds a stack of format {found}, and this skinnet reads format "
+            f"{_STACK_FORMAT}; make it again in another folder, or use the version that wrote it "
+            f"({_explain_format(found, _STACK_FORMAT, state.get('skinnet'))})."
+        )
+    return state
 
 
 def _is_whole(folder: Path, subjects: int, size: int) -> bool:

@@ -10,11 +10,13 @@ from typing import Any
 import numpy as np
 from numpy.lib.format import open_memmap
 
+from skinnet._version import __version__
 from skinnet.appearance.colour import CHANNELS, SkinColour
 from skinnet.appearance.skin_texture import SkinTexture
 from skinnet.appearance.stack import (
     _FEATURES,
     _MASKS,
+    _STACK_FORMAT,
     _STATE,
     SubjectStack,
     _is_whole,
@@ -23,9 +25,6 @@ from skinnet.appearance.stack import (
 )
 from skinnet.errors import InputError
 from skinnet.files import write_text
-
-_STACK_FORMAT = 1
-"""Version of the folder's layout."""
 
 
 def write_stack(
@@ -69,6 +68,7 @@ def write_stack(
         raise InputError(f"A model needs at least two subjects; got {len(subjects)}.")
     state: dict[str, Any] = {
         "format": _STACK_FORMAT,
+        "skinnet": __version__,
         "digest": _compute_digest(list(subjects), colour, inputs),
         "names": list(subjects),
         "colour": colour.to_record(),

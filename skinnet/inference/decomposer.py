@@ -19,6 +19,7 @@ from skinnet.images.picture import Picture
 from skinnet.images.resizing import resize
 from skinnet.images.srgb import srgb_to_linear
 from skinnet.inference._editing import ColourChange, apply_change, compute_change, fade_edges
+from skinnet.inference._onnx_pair import refuse_other_export
 from skinnet.inference.decomposition import Decomposition
 from skinnet.inference.full_resolution._colour_table import tabulate_colours
 from skinnet.inference.full_resolution._layers import Layers, enlarge_layers, sharpen_layers
@@ -74,7 +75,9 @@ class Decomposer:
     @cached_property
     def decoder(self) -> OnnxModel:
         """The skin model from maps to photographs."""
-        return open_model(get_decoder_path(self.path), "decoder", self.threads)
+        decoder = open_model(get_decoder_path(self.path), "decoder", self.threads)
+        refuse_other_export(self.encoder, decoder)
+        return decoder
 
     def load(self) -> None:
         """Open both model files now.

@@ -9,9 +9,16 @@ from typing import Any, NamedTuple
 import numpy as np
 import onnxruntime
 from numpy.typing import NDArray
-from onnxruntime.capi import onnxruntime_pybind11_state as ort_errors
 
-from skinnet.errors import InputError
+from skinnet.errors import InputError, _explain_format
+from skinnet.inference._onnx_header import Header
+from skinnet.inference._onnx_session import (
+    REMEDY,
+    RUNTIME_ERRORS,
+    identify,
+    name_versions,
+    open_session,
+)
 
 ONNX_FORMAT = "1"
 """Version of the inputs, outputs and metadata of a file."""
@@ -27,12 +34,6 @@ CAPTURE_NAMES = ("light", "temperature", "camera", "white_balance")
 
 _INPUTS = {"encoder": {"image"}, "decoder": {*MAP_NAMES, *CAPTURE_NAMES}}
 _OUTPUTS = {"encoder": {*MAP_NAMES, *CAPTURE_NAMES, "mask"}, "decoder": {"image"}}
-_REMEDY = "give a file made by `python -m export`, or leave --model out"
-_RUNTIME_ERRORS = (
-    *(ort_errors.Fail, ort_errors.InvalidArgument, ort_errors.InvalidGraph),
-    *(ort_errors.InvalidProtobuf, ort_errors.NoSuchFile, ort_errors.NotImplemented),
-    *(ort_errors.RuntimeException, RuntimeError, ValueError),
-)
 
 
 class OutputInfo(NamedTuple):
@@ -97,7 +98,7 @@ class OnnxModel:
         names = [output.name for output in self.session.get_outputs()]
         try:
             values = self.session.run(names, dict(inputs))
-        except _RUNTIME_ERRORS as error:
+        except RUNTIME_ERRORS as error:
             raise InputError(f"{self.path} failed on this photograph: {error}") from error
         return dict(zip(names, values, strict=True))
 
@@ -140,45 +141,41 @@ def open_model(path: Path, kind: str, threads: int | None = None) -> OnnxModel:
         >>> open_model(SHIPPED_ENCODER, "encoder").working_size
         160
     """
-    if not path.is_file():
-        raise InputError(f"There is no {kind} file {path}; {_REMEDY}.")
-    options = onnxruntime.SessionOptions()
-    options.log_severity_level = 4  # errors are raised; onnxruntime need not print them too
-    if threads is not None:
-        options.intra_op_num_threads = threads
-    try:
-        session = onnxruntime.InferenceSession(path, options, providers=["CPUExecutionProvider"])
-    except _RUNTIME_ERRORS as error:
-        raise InputError(
-            f"{path} is not a complete ONNX file (damaged, cut short, or something else); "
-            f"{_REMEDY}."
-        ) from error
-    metadata = session.get_modelmeta().custom_metadata_map
-    _check(path, kind, session, metadata)
-    return _read_metadata(path, session, metadata)
+    header = identify(path, kind)
+    # First, since a file that is newer than onnxruntime says so in its metadata too.
+    _check_metadata(path, kind, header)
+    session = open_session(path, header, threads)
+    _check_names(path, kind, session)
+    return _read_metadata(path, session, header.metadata)
 
 
-def _check(
-    path: Path, kind: str, session: onnxruntime.InferenceSession, metadata: Mapping[str, str]
-) -> None:
-    actual = metadata.get("skinnet.kind")
+def _check_metadata(path: Path, kind: str, header: Header) -> None:
+    metadata = header.metadata
+    actual, found = metadata.get("skinnet.kind"), metadata.get("skinnet.format")
     if actual is None:
-        raise InputError(f"{path} is an ONNX file, but not one of skinnet's; {_REMEDY}.")
-    if metadata.get("skinnet.format") != ONNX_FORMAT:
         raise InputError(
-            f"{path} has format {metadata.get('skinnet.format')}, and this skinnet reads format "
-            f"{ONNX_FORMAT}; export it again, or install the version of skinnet that wrote it."
+            f"{path} is an ONNX file, but not one of skinnet's (it has {name_versions(header)}); "
+            f"{REMEDY}."
+        )
+    if found != ONNX_FORMAT:
+        advice = _explain_format(found, int(ONNX_FORMAT), metadata.get("skinnet.version"))
+        raise InputError(
+            f"{path} has format {found}, and this skinnet reads format {ONNX_FORMAT}; export it "
+            f"again with this version, or use the one that wrote it ({advice})."
         )
     if actual != kind:
         raise InputError(
-            f"{path} is {_with_article(actual)}, but {_with_article(kind)} is needed; {_REMEDY}."
+            f"{path} is {_with_article(actual)}, but {_with_article(kind)} is needed; {REMEDY}."
         )
+
+
+def _check_names(path: Path, kind: str, session: onnxruntime.InferenceSession) -> None:
     inputs = {item.name for item in session.get_inputs()}
     outputs = {item.name for item in session.get_outputs()}
     if inputs != _INPUTS[kind] or not _OUTPUTS[kind] <= outputs:
         raise InputError(
             f"{path} is labelled as {_with_article(kind)}, but its inputs are "
-            f"{', '.join(sorted(inputs))} and its outputs {', '.join(sorted(outputs))}; {_REMEDY}."
+            f"{', '.join(sorted(inputs))} and its outputs {', '.join(sorted(outputs))}; {REMEDY}."
         )
 
 
@@ -202,7 +199,7 @@ def _read_metadata(
             {name: _read_output_info(outputs[name]) for name in maps},
         )
     except (KeyError, ValueError, TypeError, AttributeError) as error:
-        raise InputError(f"The metadata of {path} is damaged ({error!r}); {_REMEDY}.") from error
+        raise InputError(f"The metadata of {path} is damaged ({error!r}); {REMEDY}.") from error
 
 
 def _read_output_info(entry: Mapping[str, Any]) -> OutputInfo:

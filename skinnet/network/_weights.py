@@ -11,22 +11,27 @@ from safetensors.torch import save
 from torch import Tensor
 
 from skinnet._version import __version__
-from skinnet.errors import InputError
-from skinnet.files import write_atomically
+from skinnet.errors import InputError, _explain_format
+from skinnet.files import _describe_content, write_atomically
 
 WEIGHTS_FORMAT = 3
 """Version of weights and checkpoints; increase it whenever the meaning of a weight changes."""
 
 KIND = "autoencoder"
+_CONTENTS = {".ckpt": "a checkpoint of torch", ".safetensors": "weights in safetensors"}
 SHIPPED_WEIGHTS = Path(__file__).parents[1] / "inference" / "models" / "skin.safetensors"
 
 
 class SavedModel(NamedTuple):
-    """What a file holds of a model: fields of its configuration, its origin, and its weights."""
+    """What a file holds of a model: fields of its configuration, its origin, and its weights.
+
+    `version` is that of the skinnet that wrote the file, if it says so.
+    """
 
     config: Mapping[str, Any]
     trained_on: str
     state: dict[str, Tensor]
+    version: str | None = None
 
 
 def write_weights(saved: SavedModel, path: Path) -> None:
@@ -56,23 +61,48 @@ def read_weights(path: Path) -> SavedModel:
             metadata = file.metadata() or {}
             state = {name: file.get_tensor(name) for name in file.keys()}
     except SafetensorError as error:
-        raise InputError(f"{path} is not a complete safetensors file ({error}).") from error
+        what = describe_content(path, ".safetensors")
+        raise InputError(f"{path} is not a complete safetensors file{what} ({error}).") from error
     if metadata.get("skinnet.kind") != KIND:
         raise InputError(f"{path} does not hold weights of skinnet; another program wrote it.")
     if metadata.get("skinnet.format") != str(WEIGHTS_FORMAT):
-        raise InputError(
-            f"{path} has format {metadata.get('skinnet.format')}, this skinnet reads "
-            f"{WEIGHTS_FORMAT}; it was written by version {metadata.get('skinnet.version')}."
-        )
-    with refuse_mismatch(path):
+        found, version = metadata.get("skinnet.format"), metadata.get("skinnet.version")
+        raise make_format_error(path, found, version)
+    with refuse_mismatch(path, metadata.get("skinnet.version")):
         config = json.loads(metadata["skinnet.config"])
-        return SavedModel(config, metadata["skinnet.trained_on"], state)
+        version = metadata.get("skinnet.version")
+        return SavedModel(config, metadata["skinnet.trained_on"], state, version)
 
 
 @contextmanager
-def refuse_mismatch(path: Path) -> Iterator[None]:
+def refuse_mismatch(path: Path, version: object = None) -> Iterator[None]:
     """Turn an error of rebuilding a model from its description into `InputError`."""
     try:
         yield
     except (KeyError, TypeError, ValueError, RuntimeError) as error:
-        raise InputError(f"{path} does not hold the model that it describes.") from error
+        wrote = f"skinnet {version} wrote it, and this is skinnet {__version__}"
+        other = version not in (None, __version__)
+        raise InputError(
+            f"{path} does not hold the model that it describes" + (f"; {wrote}." if other else ".")
+        ) from error
+
+
+def make_format_error(path: str | Path, found: object, version: object) -> InputError:
+    """Make the error for weights of another format."""
+    return InputError(
+        f"{path} has format {found}, this skinnet reads {WEIGHTS_FORMAT}; train it again with this "
+        "version, or use the one that wrote it "
+        f"({_explain_format(found, WEIGHTS_FORMAT, version)})."
+    )
+
+
+def describe_content(path: Path, suffix: str) -> str:
+    """Say in brackets what a file is instead of weights with that suffix; nothing if unknown."""
+    content = _describe_content(path) if path.is_file() else None
+    if content is None or content[0] == _CONTENTS[suffix]:
+        return ""
+    what, remedy = content
+    for other, own in _CONTENTS.items():
+        if what == own:
+            remedy = f"give it a name that ends in {other}"
+    return f" (it is {what}; {remedy})" if remedy else f" (it is {what})"

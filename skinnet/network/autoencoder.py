@@ -188,7 +188,7 @@ class SkinAutoencoder(nn.Module):
         """
         file = SHIPPED_WEIGHTS if path is None else Path(path)
         saved = read_weights(file) if file.suffix == ".safetensors" else _read_model(file)
-        with refuse_mismatch(file):
+        with refuse_mismatch(file, saved.version):
             widths = tuple(saved.config["widths"])
             model = cls(AutoencoderConfig(**{**saved.config, "widths": widths}))
             model.load_state_dict(saved.state)

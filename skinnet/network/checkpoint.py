@@ -1,6 +1,7 @@
 """Checkpoints of training, read without running any code from them."""
 
 import pickle
+import zipfile
 from pathlib import Path
 from typing import Any
 
@@ -8,7 +9,13 @@ import torch
 
 from skinnet._version import __version__
 from skinnet.errors import InputError
-from skinnet.network._weights import WEIGHTS_FORMAT, SavedModel, refuse_mismatch
+from skinnet.network._weights import (
+    WEIGHTS_FORMAT,
+    SavedModel,
+    describe_content,
+    make_format_error,
+    refuse_mismatch,
+)
 
 _PREFIX = "model."
 
@@ -39,30 +46,38 @@ def read_checkpoint(path: str | Path) -> dict[str, Any]:
     try:
         checkpoint = torch.load(path, map_location="cpu", weights_only=True)
     except (RuntimeError, EOFError, pickle.UnpicklingError, OSError, ValueError) as error:
-        raise InputError(
-            f"{path} is not a complete checkpoint; give one that training wrote, such as "
-            "RUN/best.ckpt."
-        ) from error
+        raise InputError(_explain_unreadable(Path(path), error)) from error
     description = checkpoint.get("skinnet") if isinstance(checkpoint, dict) else None
     if not isinstance(description, dict):
         raise InputError(f"{path} is not a checkpoint of skinnet; another program wrote it.")
     if description.get("format") != WEIGHTS_FORMAT:
-        raise InputError(
-            f"{path} has format {description.get('format')}, this skinnet reads {WEIGHTS_FORMAT}; "
-            f"it was written by version {description.get('version')}."
-        )
+        raise make_format_error(path, description.get("format"), description.get("version"))
     return dict(checkpoint)
+
+
+def _explain_unreadable(path: Path, error: Exception) -> str:
+    if isinstance(error, pickle.UnpicklingError) and zipfile.is_zipfile(path):
+        return (
+            f"{path} holds other objects than weights, and they are not loaded, since they could "
+            "run code; another program or a newer version of it wrote the file. Give a checkpoint "
+            "that skinnet's training wrote, such as RUN/best.ckpt."
+        )
+    what = describe_content(path, ".ckpt")
+    return (
+        f"{path} is not a complete checkpoint{what}; give one that training wrote, such as "
+        "RUN/best.ckpt."
+    )
 
 
 def _read_model(path: Path) -> SavedModel:
     """The model in a checkpoint of training."""
     checkpoint = read_checkpoint(path)
-    with refuse_mismatch(path):
-        description = checkpoint["skinnet"]
+    description = checkpoint["skinnet"]
+    with refuse_mismatch(path, description.get("version")):
         config = {name: description[name] for name in ("optics", "widths", "working_size")}
         entries = checkpoint["state_dict"].items()
         state = {name.removeprefix(_PREFIX): v for name, v in entries if name.startswith(_PREFIX)}
-        return SavedModel(config, description["trained_on"], state)
+        return SavedModel(config, description["trained_on"], state, description.get("version"))
 
 
 def _describe(saved: SavedModel) -> dict[str, Any]:

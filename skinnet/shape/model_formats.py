@@ -8,7 +8,7 @@ from typing import Any
 
 import numpy as np
 
-from skinnet.errors import InputError
+from skinnet.errors import InputError, _explain_format
 from skinnet.files import READ_ERRORS, write_atomically
 from skinnet.mesh._mesh_parts import MESH_SUFFIXES
 from skinnet.shape._basel import load_basel_2009, load_basel_2017
@@ -159,7 +159,8 @@ def _read_own(path: Path, arrays: Mapping[str, Any]) -> ShapeModel:
     if str(arrays[_KEY]) != VERSION:
         raise InputError(
             f"{path} has version {arrays[_KEY]}, and this skinnet reads version {VERSION}; "
-            "install the skinnet that made it."
+            "make it again with this version, or use the one that wrote it "
+            f"({_explain_format(arrays[_KEY], int(VERSION), None)})."
         )
     names, vertices = arrays["landmark_names"].tolist(), arrays["landmark_vertices"].tolist()
     return ShapeModel.from_arrays(
