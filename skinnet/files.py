@@ -10,6 +10,7 @@ from contextlib import contextmanager, suppress
 from pathlib import Path
 from secrets import token_hex
 
+from skinnet._version import __version__
 from skinnet.errors import InputError
 
 READ_ERRORS = (
@@ -197,3 +198,20 @@ def _describe_archive(path: Path) -> tuple[str, str]:
     if names and all(name.endswith(".npy") for name in names):
         return "an .npz archive of arrays", ""
     return "a ZIP archive", "unpack it"
+
+
+def _explain_format(found: object, known: int, version: object) -> str:
+    """Say which skinnet wrote a file of another format, and how to get it.
+
+    Args:
+        found: The file's format.
+        known: The format that is read here.
+        version: The version that wrote the file; None where the file does not say.
+    """
+    who = f"skinnet {version}" if version else "another version of skinnet"
+    wrote = f"{who} wrote it, and this is skinnet {__version__}"
+    text = str(found)
+    if text.isdecimal() and int(text) > known:
+        return f"{wrote}: pip install -U skinnet"
+    known_here = version in (None, __version__)
+    return wrote if known_here else f'{wrote}: pip install "skinnet=={version}"'

@@ -14,8 +14,8 @@ from numpy.typing import NDArray
 from skinnet._version import __version__
 from skinnet.appearance._principal import PrincipalComponents
 from skinnet.appearance.colour import SkinColour
-from skinnet.errors import InputError, _explain_format
-from skinnet.files import _describe_content, write_atomically
+from skinnet.errors import InputError
+from skinnet.files import _describe_content, _explain_format, write_atomically
 
 MODEL_FORMAT = 1
 """Version of the layout of these files."""

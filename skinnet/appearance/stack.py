@@ -14,7 +14,8 @@ from numpy.typing import NDArray
 from skinnet.appearance._feature_blocks import compute_block_width
 from skinnet.appearance.colour import CHANNELS, SkinColour
 from skinnet.appearance.skin_texture import SkinTexture
-from skinnet.errors import InputError, _explain_format
+from skinnet.errors import InputError
+from skinnet.files import _explain_format
 
 _FEATURES, _MASKS, _STATE = "features.npy", "masks.npy", "stack.json"
 

@@ -10,7 +10,8 @@ import numpy as np
 import onnxruntime
 from numpy.typing import NDArray
 
-from skinnet.errors import InputError, _explain_format
+from skinnet.errors import InputError
+from skinnet.files import _explain_format
 from skinnet.inference._onnx_header import Header
 from skinnet.inference._onnx_session import (
     REMEDY,

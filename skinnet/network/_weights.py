@@ -11,8 +11,8 @@ from safetensors.torch import save
 from torch import Tensor
 
 from skinnet._version import __version__
-from skinnet.errors import InputError, _explain_format
-from skinnet.files import _describe_content, write_atomically
+from skinnet.errors import InputError
+from skinnet.files import _describe_content, _explain_format, write_atomically
 
 WEIGHTS_FORMAT = 3
 """Version of weights and checkpoints; increase it whenever the meaning of a weight changes."""

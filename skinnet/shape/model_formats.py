@@ -8,8 +8,8 @@ from typing import Any
 
 import numpy as np
 
-from skinnet.errors import InputError, _explain_format
-from skinnet.files import READ_ERRORS, write_atomically
+from skinnet.errors import InputError
+from skinnet.files import READ_ERRORS, _explain_format, write_atomically
 from skinnet.mesh._mesh_parts import MESH_SUFFIXES
 from skinnet.shape._basel import load_basel_2009, load_basel_2017
 from skinnet.shape._default_model import build_default_model
