@@ -25,7 +25,7 @@ _LITTER = frozenset(
 )
 """Files and folders that file managers leave behind, with thumbnails of photographs in some."""
 
-_MOST_COUNTED = 5000
+_MOST_COUNTED = 1000
 
 
 def look_at(path: str) -> Kind | None:
@@ -74,7 +74,7 @@ def is_summary(path: str) -> bool:
 def count_below(folders: Iterable[Path]) -> tuple[int, int, bool]:
     """Count the photographs in subfolders: photographs, folders with some, and whether that is all.
 
-    No more than some thousand files are looked at.
+    No more than a thousand files are looked at.
     """
     found: dict[str, int] = {}
     files = _list_files(folders)

@@ -28,7 +28,7 @@ EDITED = "edited"
 _SOFTWARE = 0x0131
 _LINE = re.compile(r"skinnet (\S+) ([\w-]+) ([\w-]+)(?: sha256:([0-9a-f]{64}))?")
 _OLD_MAP = frozenset({"map", "scale", "offset", "unit"})
-_OLD_SUMMARY = frozenset({"file", "maps", "light", "camera"})
+_SUMMARY = frozenset({"maps", "light", "camera", "skin_share"})
 _SCAN_PICTURES = {
     "shape": ("_shape.npz",),
     **dict.fromkeys(("panel", "albedo", "render", "face"), ("_maps.npz",)),
@@ -99,7 +99,7 @@ def read_summary(path: Path) -> dict[str, Any] | None:
         summary = json.loads(path.read_bytes())
     except READ_ERRORS:
         return None
-    return summary if isinstance(summary, dict) and summary.keys() >= _OLD_SUMMARY else None
+    return summary if isinstance(summary, dict) and summary.keys() >= _SUMMARY else None
 
 
 def parse_mark(line: object) -> Mark | None:

@@ -108,7 +108,7 @@ def _is_summary_of(file: Path, source: Source) -> bool:
 
 def _is_early_summary_of(summary: dict[str, Any], file: Path, photo: Path) -> bool:
     """Whether a summary without a digest, of an earlier version, is surely of this photograph."""
-    known = Path(str(summary["file"]))
+    known = Path(str(summary.get("file", "")))
     if not known.is_absolute():
         if file.parent.name != OUTPUT:
             return False  # it was relative to the folder in which the command ran then

@@ -20,7 +20,7 @@ from skinnet.images._mark import (
 
 DIGEST = "0123456789abcdef" * 4
 EDIT = Mark("edit", EDITED, DIGEST)
-SUMMARY = {"file": "a.jpg", "maps": {}, "light": {}, "camera": {}}
+SUMMARY = {"maps": {}, "light": {}, "camera": {}, "skin_share": 0.1}
 GREY = np.full((4, 5, 3), 90, np.uint8)
 
 
