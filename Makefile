@@ -42,6 +42,7 @@ bench: $(READY)
 	$(BIN)/python -m benchmarks.edits
 	$(BIN)/python -m benchmarks.decoder
 	$(BIN)/python -m benchmarks.latency
+	$(BIN)/python -m benchmarks.quantised
 	$(BIN)/python -m benchmarks.fit
 	$(BIN)/python -m benchmarks.texture
 	$(BIN)/python -m benchmarks.lookup

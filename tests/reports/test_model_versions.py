@@ -83,7 +83,6 @@ def forget_metadata(model: ModelProto) -> None:
 
 NEWER = {
     "IR version": (set_ir_version(99), ["IR version 99", RUNTIME, UPGRADE]),
-    "next IR version": (set_ir_version(14), ["IR version 14", "up to 13"]),
     "opset": (set_opset("", 99), ["opset 99 of ai.onnx", RUNTIME, UPGRADE]),
     "opset of machine learning": (set_opset("ai.onnx.ml", 99), ["opset 99 of ai.onnx.ml", UPGRADE]),
     "opset of onnxruntime": (set_opset("com.microsoft", 9), ["opset 9 of com.microsoft", UPGRADE]),
