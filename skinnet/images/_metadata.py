@@ -7,6 +7,7 @@ from PIL import Image, JpegImagePlugin
 
 from skinnet.files import READ_ERRORS
 from skinnet.images import _chunks, _segments
+from skinnet.images._boxes import EXIF_UUID, XMP_UUID, list_boxes
 from skinnet.images._directories import Directory, Tag, read_directory, read_header, write_block
 from skinnet.images._exif import strip_prefix
 from skinnet.images._resources import make_resources
@@ -93,10 +94,12 @@ def _keep_png(image: Image.Image, data: bytes, kept: Mapping[str, Any]) -> dict[
     chunks = list(_chunks.list_chunks(data))
     found: dict[str, Any] = {"chunks": chunks, "text": {}}
     for chunk in chunks:
+        if chunk[0] == b"eXIf":
+            found["exif"] = strip_prefix(chunk[1])
         key = _chunks.read_key(chunk)
         if key in ("Raw profile type exif", "Raw profile type APP1"):
             raw = _chunks.decode_raw_profile(_chunks.read_text(chunk))
-            if raw.startswith(_segments.EXIF_PREFIX) and "exif" not in kept:
+            if raw.startswith(_segments.EXIF_PREFIX) and "exif" not in found:
                 found["exif"] = strip_prefix(raw)
         elif key == "XML:com.adobe.xmp":
             found["xmp"] = _chunks.read_text(chunk)
@@ -149,12 +152,35 @@ def _has_lossless_chunk(data: bytes) -> bool:
 
 
 def _keep_heif(image: Image.Image, data: bytes, kept: Mapping[str, Any]) -> dict[str, Any]:
-    found: dict[str, Any] = {}
+    found = _note_depth(image.info.get("bit_depth") or 8)
     if any("gainmap" in str(key).lower() for key in image.info.get("aux", {})):
-        found["companions"] = (GAIN_MAP,)
+        found["companions"] = (*found.get("companions", ()), GAIN_MAP)
     if image.info.get("depth_images"):
         found["companions"] = (*found.get("companions", ()), "depth map")
     return found
+
+
+def _keep_jp2(image: Image.Image, data: bytes, kept: Mapping[str, Any]) -> dict[str, Any]:
+    found: dict[str, Any] = {"boxes": []}
+    for name, body in list_boxes(data):
+        if name == b"uuid" and body.startswith(XMP_UUID):
+            found["xmp"] = body[len(XMP_UUID) :]
+        elif name == b"uuid" and body.startswith(EXIF_UUID):
+            found["exif"] = strip_prefix(body[len(EXIF_UUID) :])
+        elif name in (b"uuid", b"xml "):
+            found["boxes"].append((name, body))
+    return found
+
+
+def _keep_avif(image: Image.Image, data: bytes, kept: Mapping[str, Any]) -> dict[str, Any]:
+    at = data.find(b"av1C", 0, 65536)
+    flags = data[at + 6] if at > 0 else 0
+    return _note_depth(8 if not flags & 0x40 else 12 if flags & 0x20 else 10)
+
+
+def _note_depth(bits: int) -> dict[str, Any]:
+    """What is said of pixels that are read with 8 bits."""
+    return {"companions": (f"{bits} bits a channel, of which 8 are read",)} if bits > 8 else {}
 
 
 _Reader = Callable[[Image.Image, bytes, Mapping[str, Any]], dict[str, Any]]
@@ -165,4 +191,6 @@ _READERS: Mapping[str, _Reader] = {
     "TIFF": _keep_tiff,
     "WEBP": _keep_webp,
     "HEIF": _keep_heif,
+    "AVIF": _keep_avif,
+    "JPEG2000": _keep_jp2,
 }

@@ -9,6 +9,7 @@ from PIL import Image
 
 from skinnet.errors import InputError
 from skinnet.files import READ_ERRORS
+from skinnet.images._deep import read_deep
 
 _EIGHT_BIT = frozenset("1 L LA La P PA RGB RGBA RGBa RGBX CMYK YCbCr HSV".split())
 _STRAIGHT = {"La": "LA", "RGBa": "RGBA"}
@@ -50,33 +51,13 @@ def read_pixels(image: Image.Image, data: bytes, name: str, upright: bool) -> Pi
     Raises:
         InputError: The pixels have no known white.
     """
-    if data and image.format == "PNG" and _is_deep_png(image, data):
-        return _turn_all(_read_deep_png(data), _find_orientation(image) if upright else 1)
+    deep = read_deep(image, data) if data else None
+    if deep is not None:
+        return _turn_all(Pixels(*deep), _find_orientation(image) if upright else 1)
     if data and image.format == "TIFF" and _needs_tifffile(image):
         orientation = _find_orientation(image) if upright else 1
         return _turn_all(_read_tiff(data, name), orientation)
     return _from_pillow(image, name, upright)
-
-
-def _is_deep_png(image: Image.Image, data: bytes) -> bool:
-    # A transparent colour (tRNS) is left to Pillow.
-    return data[24] == 16 and data[25] in (2, 4, 6) and "transparency" not in image.info
-
-
-def _read_deep_png(data: bytes) -> Pixels:
-    from imagecodecs import png_decode
-
-    values = np.asarray(png_decode(data))
-    if values.dtype != np.uint16:
-        raise ValueError(f"16-bit PNG decoded to {values.dtype}")
-    return _split_alpha(values, values.shape[2] in (2, 4))
-
-
-def _split_alpha(values: NDArray[Any], has_alpha: bool) -> Pixels:
-    if values.ndim == 2:
-        return Pixels(values, None)
-    colour, alpha = (values[..., :-1], values[..., -1]) if has_alpha else (values, None)
-    return Pixels(colour[..., 0] if colour.shape[2] == 1 else colour, alpha)
 
 
 def _needs_tifffile(image: Image.Image) -> bool:

@@ -6,11 +6,14 @@ from importlib.util import find_spec
 from pathlib import Path
 from typing import NamedTuple
 
+import numpy as np
+
 from skinnet.errors import InputError
-from skinnet.files import write_atomically
+from skinnet.files import READ_ERRORS, write_atomically
 from skinnet.images import _writers as writers
 from skinnet.images._carried import Carried, carry
 from skinnet.images._fit import blend_with_white, convert_to_srgb, reduce_depth
+from skinnet.images._jp2_writer import write_jp2
 from skinnet.images._mark import Mark
 from skinnet.images._png_writer import write_png_picture
 from skinnet.images._segments import EXIF_PREFIX, LARGEST, XMP_PREFIX
@@ -62,6 +65,7 @@ _WEBP = Format("WebP", (".webp",), _ANY_NAME, writers.write_webp, _IN_EXIF)
 _AVIF = Format("AVIF", (".avif",), _ANY_NAME, writers.write_avif, _IN_EXIF)
 _HEIF = Format("HEIC", (".heic", ".heif", ".hif"), _ANY_NAME, writers.write_heif, _IN_EXIF)
 _BMP = Format("BMP", (".bmp", ".dib"), frozenset({DPI}), writers.write_bmp)
+_JP2 = Format("JPEG 2000", (".jp2",), frozenset({ALPHA, DEEP, PROFILE, EXIF, XMP, DPI}), write_jp2)
 _PPM = Format("PPM", (".ppm", ".pnm"), frozenset({DEEP}), writers.write_ppm)
 _FORMATS = {
     "JPEG": _JPEG,
@@ -71,12 +75,13 @@ _FORMATS = {
     "WEBP": _WEBP,
     "AVIF": _AVIF,
     "HEIF": _HEIF,
+    "JPEG2000": _JP2,
     "BMP": _BMP,
     "PPM": _PPM,
 }
 """Formats that are written, by Pillow's names."""
 
-_REASONS = {"GIF": "GIF holds 256 colours only", "JPEG2000": "JPEG 2000 is not written"}
+_REASONS = {"GIF": "GIF holds 256 colours only"}
 
 
 def choose_suffix(picture: Picture, suffix: str) -> tuple[str, tuple[str, ...]]:
@@ -152,9 +157,12 @@ def write_picture(path: Path, picture: Picture, mark: Mark | None = None) -> tup
     try:
         with write_atomically(path) as part:
             target.write(part, fitted, carried)
-    except OSError as error:
+    except InputError:
+        raise
+    except READ_ERRORS as error:  # encoders refuse by many of them, such as sizes above a limit
+        reason = getattr(error, "strerror", None) or error
         raise InputError(
-            f"{path} cannot be written ({error.strerror or error}); choose another file with -o."
+            f"{path} cannot be written ({reason}); choose another file with -o."
         ) from error
     return tuple(notes)
 
@@ -171,7 +179,9 @@ def _fit_pixels(picture: Picture, target: Format, path: Path) -> tuple[Picture, 
         notes.append(f"{path} is converted from {space} to sRGB, {reason}.")
         picture = convert_to_srgb(picture)
     if picture.alpha is not None and ALPHA not in target.holds:
-        notes.append(f"{path} is blended with white, since {target.name} holds no transparency.")
+        if (picture.alpha < np.iinfo(picture.alpha.dtype).max).any():
+            words = f"since {target.name} holds no transparency"
+            notes.append(f"{path} is blended with white, {words}.")
         picture = blend_with_white(picture)
     if picture.pixels.dtype.itemsize == 2 and DEEP not in target.holds:
         notes.append(f"{path} has 8 bits a channel, since {target.name} holds no 16.")

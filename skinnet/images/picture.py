@@ -100,16 +100,17 @@ class Picture:
             The picture itself, where it is so; grey pixels become RGB, and those of a profile that
             gives no way back, such as a scanner's, become sRGB.
         """
-        pixels, profile = self.pixels, self.colour_space.profile
+        pixels, profile, notes = self.pixels, self.colour_space.profile, self.notes
         if pixels.ndim == 3 and (profile is None or is_invertible(profile)):
             return self
         if pixels.ndim == 2:
             pixels, profile = self._expand()
         if profile is not None and not is_invertible(profile):
             pixels = convert_pixels(pixels, profile, make_srgb_profile(), pixels.dtype)
-            profile = None
-        space = self.colour_space if profile else ColourSpace("sRGB", self.colour_space.known_from)
-        return replace(self, pixels=pixels, colour_space=space)
+            name, profile = self.colour_space.name, None
+            notes = (*notes, f"{self.name} is converted from {name}, which is only read, to sRGB.")
+        space = self.colour_space if profile else ColourSpace("sRGB", "assumed")
+        return replace(self, pixels=pixels, colour_space=space, notes=notes)
 
     def _to_srgb(self) -> NDArray[np.uint8]:
         pixels, profile = self._expand()

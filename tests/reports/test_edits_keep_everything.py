@@ -178,7 +178,7 @@ def load_profile(path: Path) -> bytes | None:
 
 def check_colours(srgb: np.ndarray, tolerance: float) -> None:
     """Compare with the edit of the sRGB version; its brightest and darkest pixels are clipped."""
-    difference = np.abs(srgb - edit_srgb())
+    difference = np.abs(np.asarray(srgb, float) - edit_srgb())
     assert np.quantile(difference, 0.99) <= tolerance
     assert np.abs(edit_srgb().astype(float) - FACE).mean() > 5
 
@@ -578,6 +578,7 @@ LOSSES: dict[str, tuple[str, list[str]]] = {
     "WebP": (".webp", ["has 8 bits", "texts (Title)"]),
     "AVIF": (".avif", ["has 8 bits", "texts (Title)"]),
     "TIFF": (".tif", ["texts (Title)"]),
+    "JPEG 2000": (".jp2", ["texts (Title)"]),
     "BMP": (
         ".bmp",
         ["from RGB built-in to sRGB", "blended with white", "has 8 bits", "EXIF, XMP, texts"],
@@ -611,14 +612,110 @@ def test_what_a_format_cannot_hold_is_said(tmp_path: Path, case: str) -> None:
     assert np.quantile(np.abs(read_picture(path).srgb - edited), 0.98) <= CODEC
 
 
-@pytest.mark.parametrize(("suffix", "written"), [(".gif", "GIF"), (".jp2", "JPEG 2000")])
-def test_formats_that_are_not_written_become_png_in_words(
-    tmp_path: Path, suffix: str, written: str
-) -> None:
-    Image.fromarray(FACE).save(tmp_path / f"a{suffix}")
-    path, notes = edit(tmp_path / f"a{suffix}")
+def test_a_gif_becomes_png_in_words(tmp_path: Path) -> None:
+    image = Image.fromarray(FACE).quantize(200)
+    image.save(tmp_path / "a.gif", transparency=image.getpixel((0, 0)), comment="a comment")
+    path, notes = edit(tmp_path / "a.gif")
     assert path.suffix == ".png" and name_format(path) == "PNG"
-    assert f"is written as PNG, since {written}" in notes[0]
+    assert notes[0].endswith("a.gif is written as PNG, since GIF holds 256 colours only.")
+    with Image.open(path) as result:
+        assert result.mode == "RGBA" and result.text["Comment"] == "a comment"
+
+
+@pytest.mark.parametrize("alpha", [False, True])
+def test_jpeg_2000_keeps_profile_alpha_and_exif(tmp_path: Path, alpha: bool) -> None:
+    stored = encode("Display P3")
+    stored = np.dstack([stored, make_alpha()]) if alpha else stored
+    profile = PROFILES["Display P3"]
+    first = save(tmp_path / "b.png", stored, icc_profile=profile, exif=make_exif())
+    write_picture(tmp_path / "a.jp2", read_picture(first))
+    path, notes = edit(tmp_path / "a.jp2")
+    assert path.suffix == ".jp2" and notes == () and read_mark(path) == MARK
+    assert path.read_bytes().count(profile) == 1 and b"NIKON" in path.read_bytes()
+    with Image.open(path) as image:
+        assert image.mode == ("RGBA" if alpha else "RGB")
+        result = np.array(image)
+    kept = (result == stored).all(-1)
+    assert kept[(edit_srgb() == FACE).all(-1)].mean() > 0.99
+    if alpha:
+        np.testing.assert_array_equal(result[..., 3], make_alpha())
+    else:
+        check_colours(decode("Display P3", result), 2)
+
+
+def test_jpeg_2000_holds_16_bits(tmp_path: Path) -> None:
+    path, notes = edit(save(tmp_path / "a.tif", encode("sRGB", np.uint16)), ".jp2")
+    result = imagecodecs.jpeg2k_decode(path.read_bytes())
+    assert notes == () and result.dtype == np.uint16 and len(np.unique(result)) > 2000
+    check_colours(result / 257, 2)
+
+
+@pytest.mark.parametrize("top", [1023, 65535])
+def test_deep_ppm_keeps_its_depth(tmp_path: Path, top: int) -> None:
+    stored = np.rint(FACE / 255 * top).astype(">u2")
+    (tmp_path / "a.ppm").write_bytes(b"P6 160 160 %d " % top + stored.tobytes())
+    path, notes = edit(tmp_path / "a.ppm")
+    assert notes == () and path.read_bytes().startswith(b"P6\n160 160\n65535\n")
+    result = np.frombuffer(path.read_bytes(), ">u2", FACE.size, 17).reshape(FACE.shape)
+    check_colours(result / 257, 2)
+
+
+def test_a_transparent_colour_of_16_bits_stays_transparent(tmp_path: Path) -> None:
+    stored = encode("sRGB", np.uint16)
+    chunk = (b"tRNS", struct.pack(">3H", *stored[0, 0].tolist()))
+    (tmp_path / "a.png").write_bytes(make_png(stored, chunk))
+    path, _ = edit(tmp_path / "a.png")
+    result = load_pixels(path)
+    clear = (stored == stored[0, 0]).all(-1)
+    assert result.dtype == np.uint16 and ((result[..., 3] == 0) == clear).all()
+    np.testing.assert_array_equal(result[clear][:, :3], stored[clear])
+
+
+@pytest.mark.parametrize("bits", [10, 12])
+def test_a_depth_that_is_read_as_8_bits_is_said(tmp_path: Path, bits: int) -> None:
+    stored = encode("sRGB", np.uint16) >> (16 - bits)
+    content = imagecodecs.avif_encode(stored, bitspersample=bits, level=95)
+    (tmp_path / "a.avif").write_bytes(content)
+    _, notes = edit(tmp_path / "a.avif")
+    assert f"{bits} bits a channel, of which 8 are read" in notes[0]
+
+
+@pytest.mark.parametrize("orientation", [1, 6])
+def test_heic(tmp_path: Path, orientation: int) -> None:
+    heif = pytest.importorskip("pillow_heif")
+    stored = turn_back(FACE, orientation)
+    image = Image.fromarray(stored)
+    image.info["icc_profile"] = PROFILES["sRGB"]
+    exif = make_exif(orientation)
+    heif.from_pillow(image).save(
+        tmp_path / "a.heic", quality=95, chroma=444, exif=exif.tobytes(), xmp=XMP
+    )
+    path, notes = edit(tmp_path / "a.heic")
+    assert path.suffix == ".heic" and notes == ()
+    result = heif.open_heif(path)
+    assert result.info["icc_profile"] == PROFILES["sRGB"] and result.info["xmp"] == XMP
+    pixels = np.asarray(result.to_pillow())
+    assert pixels.shape == FACE.shape
+    check_colours(pixels, CODEC)
+    kept = Image.Exif()
+    kept.load(result.info["exif"])
+    assert kept[0x010F] == "NIKON CORPORATION" and kept.get(0x0112, 1) == 1
+    assert kept.get_ifd(0x8769)[0x927C].startswith(b"Nikon")
+
+
+def test_a_jpeg_of_rgb_components_stays_so(tmp_path: Path) -> None:
+    Image.fromarray(FACE).save(tmp_path / "a.jpg", quality=97, subsampling=0, keep_rgb=True)
+    path, _ = edit(tmp_path / "a.jpg")
+    with Image.open(path) as image:
+        assert image.info["adobe_transform"] == 0 and image.mode == "RGB"
+    check_colours(load_pixels(path), CODEC)
+
+
+def test_what_cannot_be_encoded_is_a_sentence(tmp_path: Path) -> None:
+    wide = Picture("a", np.zeros((1, 17000, 3), np.uint8))
+    with pytest.raises(InputError, match=r"b\.webp cannot be written .*; choose another file with"):
+        write_picture(tmp_path / "b.webp", wide, MARK)
+    assert list(tmp_path.iterdir()) == []
 
 
 @pytest.mark.parametrize("suffix", [".bmp", ".ppm"])
