@@ -6,6 +6,9 @@ from jaxtyping import Float
 WIDTH = 10.0
 """Width of the bands in nm."""
 
+_FAR = 1000.0
+"""Distance in nm from the bands beyond which a table does not matter."""
+
 _ROUNDING = 1e-6
 """Share of a band that the distance of two rows may exceed it by, from rounding."""
 
@@ -30,7 +33,7 @@ def average_over_bands(
     Returns:
         The averages.
     """
-    wavelength, values = _fill_gaps(wavelength, values)
+    wavelength, values = _fill_gaps(*_cut(wavelength, values, bands))
     middles = (wavelength[1:] + wavelength[:-1]) / 2
     first, last = 2 * wavelength[0] - middles[0], 2 * wavelength[-1] - middles[-1]
     edges = np.array([first, *middles, last])
@@ -39,6 +42,18 @@ def average_over_bands(
     low, high = (np.clip(bands + side * WIDTH / 2, first, last) for side in (-1, 1))
     columns = [np.interp(high, edges, one) - np.interp(low, edges, one) for one in integral.T]
     return np.stack(columns, 1) / (high - low)[:, None]
+
+
+def _cut(
+    wavelength: Float[np.ndarray, "rows"],
+    values: Float[np.ndarray, "rows columns"],
+    bands: Float[np.ndarray, "bands"],
+) -> tuple[Float[np.ndarray, "fewer"], Float[np.ndarray, "fewer columns"]]:
+    """Cut a table far from the bands, so that no gap is too wide to be filled."""
+    low, high = max(wavelength[0], bands[0] - _FAR), min(wavelength[-1], bands[-1] + _FAR)
+    inside = wavelength[(wavelength > low) & (wavelength < high)]
+    kept = np.array([low, *inside, high])
+    return kept, np.stack([np.interp(kept, wavelength, one) for one in values.T], 1)
 
 
 def _fill_gaps(

@@ -168,7 +168,10 @@ def _split(line: str, separator: str | None) -> list[str]:
     if separator is None:
         fields = line.replace('"', " ").split()
     else:
-        fields = next(csv.reader([line], delimiter=separator, skipinitialspace=True), [])
+        try:
+            fields = next(csv.reader([line], delimiter=separator, skipinitialspace=True), [])
+        except csv.Error:  # a field of more than 131,072 characters
+            fields = []
     return [_UNIT.sub("", field.strip()) for field in fields] or [""]
 
 

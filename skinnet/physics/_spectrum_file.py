@@ -43,7 +43,7 @@ _CHANNELS = (
 
 
 def read_light(path: Path) -> Float[np.ndarray, "bands"]:
-    """Read the power of a light at the 33 bands from a file of wavelength and power."""
+    """Read the power of a light at the 33 bands, times any factor, from a file."""
     needed = "needs 2 columns, one row for each wavelength: wavelength in nm, then 1 value"
     table = read_number_table(path, 2, needed)
     bands, _ = _average(path, table, 1, needed)
@@ -51,7 +51,7 @@ def read_light(path: Path) -> Float[np.ndarray, "bands"]:
 
 
 def read_camera(path: Path) -> Float[np.ndarray, "bands 3"]:
-    """Read R, G and B of a camera at the 33 bands from a file of wavelength and three values."""
+    """Read R, G and B of a camera at the 33 bands, each times any factor, from a file."""
     needed = (
         "needs 4 columns, one row for each wavelength: wavelength in nm, then 3 values, of R, G "
         "and B"
@@ -81,10 +81,11 @@ def _average(
     _check_finite(path, table)
     wavelength = _convert_wavelengths(path, table.values[:, first], names[first] if names else "")
     order = _check_wavelengths(path, wavelength)
-    bands = average_over_bands(
-        wavelength[order], table.values[order][:, others], WAVELENGTHS.numpy()
-    )
-    return _clip_noise(path, bands, table.values[:, others]), [names[i] for i in others if names]
+    values = table.values[:, others]
+    # Only the shape counts, and the sum of the largest floats would be infinite.
+    values = values / np.abs(values).max(0).clip(np.finfo(float).tiny)
+    bands = average_over_bands(wavelength[order], values[order], WAVELENGTHS.numpy())
+    return _clip_noise(path, bands, values), [names[i] for i in others if names]
 
 
 def _check_headings(path: Path, wavelength: str, values: list[str]) -> None:
@@ -161,8 +162,8 @@ def _clip_noise(
         missing > _NOISE * clipped.sum(0)
     ).any():
         raise InputError(
-            f"{path} has a value that is negative or not finite, {values.min():g}, and more than "
-            "noise; subtract the dark spectrum, or set such values to 0."
+            f"{path} has a value that is negative or not finite, {values.min():.2g} of the "
+            "largest, which is more than noise; subtract the dark spectrum, or set it to 0."
         )
     return clipped
 

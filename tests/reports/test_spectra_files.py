@@ -104,6 +104,16 @@ def test_a_range_that_ends_too_early_is_refused(tmp_path: Path, low: int, high: 
         load_light(path)
 
 
+@pytest.mark.parametrize(("least", "most", "scale"), [(1e-300, 1e300, 1), (1, 1e9, 1e307)])
+def test_numbers_of_any_size_are_read(
+    tmp_path: Path, least: float, most: float, scale: float
+) -> None:
+    wavelength = np.array([least, *np.arange(380.0, 781.0, 10), most])
+    power = scale * (np.clip(wavelength, 380, 780) / 780)
+    found = load_light(tabulate(tmp_path / "lamp.csv", wavelength, power)).numpy()
+    np.testing.assert_allclose(found, BANDS / BANDS.sum(), rtol=1e-6)
+
+
 WAVELENGTH = np.arange(380.0, 781.0, 5)
 POWER = 1 + ((WAVELENGTH - 380) / 100) ** 2
 RIGHT = sum(np.interp(BANDS + d, WAVELENGTH, POWER) * w for d, w in ((-5, 1), (0, 2), (5, 1)))
@@ -291,6 +301,8 @@ BAD = {
     "spdx": ('<?xml version="1.0"?><IESTM2714 version="1.0">', "an XML"),
     "json": ('{"wavelength": [400, 720]}', "a JSON file"),
     "sheet": ("PK\x03\x04 sheet", "a spreadsheet"),
+    "one_line": ("[" + 99999 * "1, " + "1]", "has no table of numbers"),
+    "one_row": ("560,1", "covers 560 to 560 nm"),
     "words": ("a lamp of ours", "has no table of numbers"),
     "empty": ("", "has no table of numbers"),
 }  # fmt: skip
