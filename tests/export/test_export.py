@@ -10,11 +10,12 @@ import onnx
 import onnxruntime
 import pytest
 import torch
+from onnxruntime.quantization import quant_pre_process, quantize_dynamic
 from safetensors import safe_open
 from safetensors.torch import save_file
 
 from export.__main__ import main
-from skinnet.inference import SHIPPED_ENCODER
+from skinnet.inference import SHIPPED_ENCODER, open_model
 from skinnet.network import AutoencoderConfig, SkinAutoencoder
 from skinnet.network._weights import WEIGHTS_FORMAT
 
@@ -67,6 +68,20 @@ def test_metadata_have_the_keys_of_the_shipped_files(exported: Path, name: str) 
         for path in (exported.with_name(name), shipped)
     ]
     assert keys[0] == keys[1]
+
+
+@pytest.mark.parametrize("name", ["skin.onnx", "skin.decoder.onnx"])
+def test_a_file_can_be_prepared_and_quantised(
+    exported: Path, name: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    onnx.checker.check_model(onnx.load(exported.with_name(name)), full_check=True)
+    ready, target = tmp_path / "ready.onnx", tmp_path / name
+    quant_pre_process(exported.with_name(name), ready)
+    for source in (exported.with_name(name), ready):
+        quantize_dynamic(source, target)
+        kind = "decoder" if "decoder" in name else "encoder"
+        assert open_model(target, kind).trained_on == "nothing at all"
 
 
 def test_encoder_and_decoder_make_the_reconstruction_of_torch(exported: Path) -> None:
