@@ -8,6 +8,7 @@ import numpy as np
 from jsonargparse import ArgumentParser, Namespace
 
 from skinnet.errors import InputError
+from skinnet.images._result_names import lock_folder
 from skinnet.images.photograph import write_png
 from skinnet.mesh.mesh import Mesh
 from skinnet.mesh.mesh_file import write_mesh
@@ -96,20 +97,29 @@ def fit_scan(
     start = find_initial_pose(model, scan.mesh) if scan.landmarks is None else None
     fit = register(model, scan.mesh, scan.landmarks, settings, log, start)
     _check_fit(fit, scan, model)
-    fitted = FittedScan(scan, source, fit, stem, fingerprint)
+    with lock_folder(stem.parent):
+        # Another process may have taken the name meanwhile.
+        stem = make_output_stem(source, output)
+        fitted = FittedScan(scan, source, fit, stem, fingerprint)
+        write_fit(fitted, model)
+    return fitted
+
+
+def write_fit(fitted: FittedScan, model: ShapeModel) -> None:
+    """Write the files of a fit, the record last; warn if its shape is unlikely."""
+    archive, mesh, picture, record = (add_end(fitted.stem, end) for end in _ENDS)
     summary = summarise_fit(fitted, model)
     if summary["rms_deviations"] > _UNLIKELY_SHAPE:
         log(
-            f"{scan.path}: the fitted shape is unlikely under {model.name}; look at {picture}, and "
-            "give a model of real faces with --model."
+            f"{fitted.scan.path}: the fitted shape is unlikely under {model.name}; look at "
+            f"{picture}, and give a model of real faces with --model."
         )
-    text = source.make_mark(_VERB, "shape").to_text()
-    origin = source.describe(_VERB, "shape", stem.parent)
-    save_fit(archive, fit, origin)
+    text = fitted.source.make_mark(_VERB, "shape").to_text()
+    origin = fitted.source.describe(_VERB, "shape", fitted.stem.parent)
+    save_fit(archive, fitted.fit, origin)
     write_mesh(mesh, fitted.mesh(model), text)
-    write_png(picture, draw_fit(scan.mesh, fitted.mesh(model), fit), text)
-    write_record(record, fingerprint, origin | summary)
-    return fitted
+    write_png(picture, draw_fit(fitted.scan.mesh, fitted.mesh(model), fitted.fit), text)
+    write_record(record, fitted.fingerprint, origin | summary)
 
 
 def describe_fit(fitted: FittedScan) -> str:

@@ -135,6 +135,22 @@ def test_an_interrupted_run_is_continued_under_its_name(people: Path) -> None:
     assert (people / "out" / "a_maps.json").is_file()
 
 
+def test_a_name_that_is_taken_during_the_fit_is_left_alone(
+    people: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    register = _fit_shape.register
+
+    def take(*arguments: object) -> object:
+        (people / "new" / "a_shape.json").write_text("another process wrote this")
+        return register(*arguments)
+
+    monkeypatch.setattr(_fit_shape, "register", take)
+    command = make_maps(people, "one", people / "new")
+    assert main(["fit-shape", *(word for word in command[1:] if word != WARP)]) == 0
+    assert (people / "new" / "a_shape.json").read_text() == "another process wrote this"
+    assert (people / "new" / "a-2_shape.npz").is_file()
+
+
 def test_a_changed_scan_is_another_input(people: Path) -> None:
     before = read_all(people / "out")
     write_scan(people / "one" / "a.obj", 3)
@@ -263,6 +279,15 @@ def test_a_model_of_other_people_is_not_replaced(models: Path, refused: Callable
     assert read_all(models / "model") == before
     assert main([*build(models, "first", "model"), "--model.components=1"]) == 0
     assert read_all(models / "model")["hybrid.npz"] != before["hybrid.npz"]
+
+
+def test_models_and_samples_carry_a_mark(models: Path) -> None:
+    for folder, verb in (("model", "build-model"), ("samples", "sample")):
+        files = sorted((models / folder).iterdir())
+        marks = [read_result_mark(file) for file in files]
+        assert len(files) == (6 if folder == "model" else 3)
+        assert {mark.verb for mark in marks if mark} == {verb} and None not in marks
+        assert all(read_mark(file) for file in files if file.suffix == ".png")
 
 
 def test_the_default_folder_of_a_model_gets_a_number(
