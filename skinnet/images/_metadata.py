@@ -16,7 +16,11 @@ from skinnet.images._xmp import GAIN_MAP, find_companions
 CREDENTIALS = "content credentials (C2PA)"
 LAYERS = "layers of Photoshop"
 
+_MOST_PADDING = 256
 _KEPT = ("exif", "xmp", "dpi", "comment")
+_RAW_KEYS = frozenset(f"Raw profile type {name}" for name in ("exif", "APP1", "xmp"))
+"""Texts of ImageMagick that hold EXIF or XMP."""
+
 _COMPRESSION, _PREDICTOR, _XMP, _IPTC, _PHOTOSHOP, _LAYERS = 259, 317, 700, 33723, 34377, 37724
 LAYOUT = frozenset(
     {
@@ -86,8 +90,15 @@ def _keep_jpeg(image: Image.Image, data: bytes, kept: Mapping[str, Any]) -> dict
         *((GAIN_MAP,) if gain_map else ()),
         *(("further pictures",) if index and "frames" not in kept else ()),
         *((CREDENTIALS,) if signed else ()),
+        *(("data behind the picture",) if _has_trailer(data) else ()),
     )
     return found
+
+
+def _has_trailer(data: bytes) -> bool:
+    """Whether other data follow the last picture, such as the video of a motion photograph."""
+    end = data.rfind(b"\xff\xd9")
+    return end > 0 and len(data[end + 2 :].strip(b"\0\r\n \xff")) > _MOST_PADDING
 
 
 def _keep_png(image: Image.Image, data: bytes, kept: Mapping[str, Any]) -> dict[str, Any]:
@@ -97,10 +108,12 @@ def _keep_png(image: Image.Image, data: bytes, kept: Mapping[str, Any]) -> dict[
         if chunk[0] == b"eXIf":
             found["exif"] = strip_prefix(chunk[1])
         key = _chunks.read_key(chunk)
-        if key in ("Raw profile type exif", "Raw profile type APP1"):
+        if key in _RAW_KEYS:
             raw = _chunks.decode_raw_profile(_chunks.read_text(chunk))
             if raw.startswith(_segments.EXIF_PREFIX) and "exif" not in found:
                 found["exif"] = strip_prefix(raw)
+            elif not raw.startswith(_segments.EXIF_PREFIX):
+                found.setdefault("xmp", raw.removeprefix(_segments.XMP_PREFIX))
         elif key == "XML:com.adobe.xmp":
             found["xmp"] = _chunks.read_text(chunk)
         elif key and not key.startswith("Raw profile"):
@@ -161,7 +174,7 @@ def _keep_heif(image: Image.Image, data: bytes, kept: Mapping[str, Any]) -> dict
 
 
 def _keep_jp2(image: Image.Image, data: bytes, kept: Mapping[str, Any]) -> dict[str, Any]:
-    found: dict[str, Any] = {"boxes": []}
+    found: dict[str, Any] = {"boxes": [], "comment": b""}  # it names the encoder
     for name, body in list_boxes(data):
         if name == b"uuid" and body.startswith(XMP_UUID):
             found["xmp"] = body[len(XMP_UUID) :]

@@ -12,6 +12,7 @@ from skinnet.errors import InputError
 from skinnet.files import READ_ERRORS, write_atomically
 from skinnet.images import _writers as writers
 from skinnet.images._carried import Carried, carry
+from skinnet.images._exif import update_exif
 from skinnet.images._fit import blend_with_white, convert_to_srgb, reduce_depth
 from skinnet.images._jp2_writer import write_jp2
 from skinnet.images._mark import Mark
@@ -200,7 +201,7 @@ def _fit_metadata(carried: Carried, target: Format) -> tuple[Carried, list[str]]
         carried = replace(carried, xmp=b"")
     if target is _JPEG and len(EXIF_PREFIX + carried.exif) > LARGEST:
         lost.append("EXIF of more than 64 KB")
-        carried = replace(carried, exif=b"")
+        carried = replace(carried, exif=update_exif(b"", (0, 0), str(carried.mark or "")))
     if target is _JPEG and len(XMP_PREFIX + carried.xmp) > LARGEST:
         lost.append("XMP of more than 64 KB")
         carried = replace(carried, xmp=b"")

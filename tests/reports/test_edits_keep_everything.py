@@ -478,33 +478,57 @@ def test_cmyk_stays_cmyk(tmp_path: Path, suffix: str) -> None:
             assert kept[(edit_srgb() == FACE).all(-1)].mean() > 0.99
 
 
+def join_profile(kind: bytes, space: bytes, tables: dict[bytes, bytes]) -> bytes:
+    """A profile of tables."""
+    tags = {
+        b"desc": b"desc\0\0\0\0\0\0\0\x05ink\0\0" + bytes(79),
+        b"cprt": b"text\0\0\0\0none\0\0\0\0",
+        b"wtpt": b"XYZ \0\0\0\0" + struct.pack(">3i", *D50),
+    } | tables
+    at, table, body = 128 + 4 + 12 * len(tags), b"", b""
+    for name, content in tags.items():
+        table += struct.pack(">4sII", name, at + len(body), len(content))
+        body += content + bytes(-len(content) % 4)
+    words = (0x02400000, kind, space, b"Lab ", 2020, 1, 1, 0, 0, 0, b"acsp")
+    head = struct.pack(">4xI4s4s4s6H4s", *words) + bytes(28) + struct.pack(">3i", *D50) + bytes(48)
+    size = struct.pack(">I", 128 + 4 + len(table) + len(body))
+    return size + head + struct.pack(">I", len(tags)) + table + body
+
+
+def make_scanner_profile() -> bytes:
+    """A scanner's profile of sRGB, which has no way back from colours to its values."""
+    grid = np.stack(np.meshgrid(*[np.linspace(0, 1, 17)] * 3, indexing="ij"), -1)
+    lab = rgb2lab(grid) * [652.8, 256, 256] + [0, 32768, 32768]
+    return join_profile(b"scnr", b"RGB ", {b"A2B0": make_table(lab)})
+
+
+def test_a_profile_without_a_way_back_becomes_srgb_in_words(tmp_path: Path) -> None:
+    path = save(tmp_path / "a.tif", encode("sRGB", np.uint16), icc_profile=make_scanner_profile())
+    picture = read_picture(path)
+    assert picture.colour_space.profile == make_scanner_profile()
+    edited = load().edit_picture(picture, 2.0, 1.5, whole_image=True)
+    assert "is converted from ink, which is only read, to sRGB" in edited.notes[-1]
+    write_picture(tmp_path / "b.tif", edited)
+    assert load_profile(tmp_path / "b.tif") is None
+    right = load().edit(picture.srgb, 2.0, 1.5, whole_image=True)
+    difference = np.abs(tifffile.imread(tmp_path / "b.tif") / 257 - right)
+    assert np.quantile(difference, 0.99) <= 2
+
+
 def make_cmyk_profile() -> bytes:
     """A printer's profile, by tables, for Pillow's formula of CMYK."""
     grid = np.stack(np.meshgrid(*[np.linspace(0, 1, 9)] * 4, indexing="ij"), -1)
-    lab = rgb2lab((1 - grid[..., :3]) * (1 - grid[..., 3:]), illuminant="D50")
+    lab = rgb2lab((1 - grid[..., :3]) * (1 - grid[..., 3:]))
     to_lab = lab * [652.8, 256, 256] + [0, 32768, 32768]
     axes = np.meshgrid(*[np.linspace(0, 65535, 17)] * 3, indexing="ij")
     wanted = (np.stack(axes, -1) - [0, 32768, 32768]) / [652.8, 256, 256]
     with warnings.catch_warnings():
         warnings.simplefilter("ignore")
-        rgb = lab2rgb(wanted, illuminant="D50").clip(0, 1)
+        rgb = lab2rgb(wanted).clip(0, 1)
     black = 0.5 * (1 - rgb.max(-1, keepdims=True))
     from_lab = np.concatenate([1 - rgb / (1 - black), black], -1) * 65535
-    tags = {
-        b"desc": b"desc\0\0\0\0\0\0\0\x05ink\0\0" + bytes(79),
-        b"cprt": b"text\0\0\0\0none\0\0\0\0",
-        b"wtpt": b"XYZ \0\0\0\0" + struct.pack(">3i", *D50),
-        b"A2B0": make_table(to_lab),
-        b"B2A0": make_table(from_lab),
-    }
-    at, table, body = 128 + 4 + 12 * len(tags), b"", b""
-    for name, content in tags.items():
-        table += struct.pack(">4sII", name, at + len(body), len(content))
-        body += content + bytes(-len(content) % 4)
-    words = (0x02400000, b"prtr", b"CMYK", b"Lab ", 2020, 1, 1, 0, 0, 0, b"acsp")
-    head = struct.pack(">4xI4s4s4s6H4s", *words) + bytes(28) + struct.pack(">3i", *D50) + bytes(48)
-    size = struct.pack(">I", 128 + 4 + len(table) + len(body))
-    return size + head + struct.pack(">I", len(tags)) + table + body
+    tables = {b"A2B0": make_table(to_lab), b"B2A0": make_table(from_lab)}
+    return join_profile(b"prtr", b"CMYK", tables)
 
 
 def make_table(values: np.ndarray) -> bytes:
@@ -648,6 +672,32 @@ def test_jpeg_2000_holds_16_bits(tmp_path: Path) -> None:
     result = imagecodecs.jpeg2k_decode(path.read_bytes())
     assert notes == () and result.dtype == np.uint16 and len(np.unique(result)) > 2000
     check_colours(result / 257, 2)
+
+
+def test_white_of_a_deep_jpeg_2000_is_not_black(tmp_path: Path) -> None:
+    stored = np.full((8, 8, 3), 65535, np.uint16)
+    stored[0] = 1000
+    path = tmp_path / "a.jp2"
+    for bits in (10, 16):
+        values = stored >> (16 - bits)
+        content = imagecodecs.jpeg2k_encode(values, level=0, codecformat="jp2", bitspersample=bits)
+        path.write_bytes(content)
+        pixels = read_picture(path).pixels
+        assert pixels.dtype == np.uint16
+        assert np.abs(pixels.astype(int) - stored).max() <= 65536 >> bits
+
+
+def test_exif_that_is_too_large_for_jpeg_is_said_and_the_mark_stays(tmp_path: Path) -> None:
+    exif = make_exif(None, **{"9286": b"x" * 80000}).tobytes()[6:]
+    (tmp_path / "a.png").write_bytes(make_png(FACE, (b"eXIf", exif)))
+    path, notes = edit(tmp_path / "a.png", ".jpg")
+    assert "EXIF of more than 64 KB" in notes[0] and read_mark(path) == MARK
+
+
+def test_data_behind_a_jpeg_are_said(tmp_path: Path) -> None:
+    path = save(tmp_path / "a.jpg", FACE)
+    path.write_bytes(path.read_bytes() + b"ftypmp42" * 100)
+    assert "data behind the picture" in edit(path)[1][0]
 
 
 @pytest.mark.parametrize("top", [1023, 65535])
