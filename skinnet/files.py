@@ -70,7 +70,7 @@ def write_together() -> Iterator[Callable[[Path], Path]]:
 def _keep_older(path: Path, older: dict[Path, Path]) -> None:
     """Give a file that is about to be replaced a second name, until all have been written."""
     kept = path.with_name(f".{token_hex(6)}.old{path.suffix}")
-    with suppress(OSError):  # there is no such file, or the file system has no links
+    with suppress(OSError, NotImplementedError):  # there is none, or links are unknown
         os.link(path, kept, follow_symlinks=False)
         older[path] = kept
 
