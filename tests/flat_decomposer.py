@@ -13,6 +13,7 @@ from skinnet.cli import main
 from skinnet.errors import NoFaceError
 from skinnet.images import Box, write_png
 from skinnet.images.picture import Picture
+from skinnet.inference.decomposer import Decomposer
 from skinnet.inference.decomposition import Decomposition
 from skinnet.inference.onnx_model import OutputInfo
 
@@ -27,7 +28,7 @@ WALL = (255, 255, 255)
 """A colour in which no face is found."""
 
 
-class FlatDecomposer:
+class FlatDecomposer(Decomposer):
     """Reads a thousandth of the red of the first pixel as melanin; white has no face."""
 
     def __init__(self, model: object = None) -> None:
@@ -56,10 +57,6 @@ class FlatDecomposer:
             notes=picture.notes,
         )
 
-    def edit(self, picture: Picture, *_: object) -> np.ndarray:
-        """The photograph as it is."""
-        return picture.srgb
-
     def edit_picture(self, picture: Picture, *_: object, **__: object) -> Picture:
         """The picture as it is."""
         return picture
@@ -70,7 +67,7 @@ def run(
     monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> Callable[..., tuple[int, str, str]]:
     """Runs the command without a network: its exit code, output and messages."""
-    monkeypatch.setattr("skinnet.inference.decomposer.Decomposer", FlatDecomposer)
+    monkeypatch.setattr("skinnet.inference._photo_verbs.Decomposer", FlatDecomposer)
     monkeypatch.setattr("skinnet.inference.results.draw_panel", lambda photo, _: photo)  # is slow
 
     def run(*arguments: object) -> tuple[int, str, str]:

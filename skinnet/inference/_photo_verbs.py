@@ -1,0 +1,150 @@
+"""The verbs `predict` and `edit`, with options that are parsed."""
+
+import argparse
+import hashlib
+import json
+import sys
+from collections import Counter
+from collections.abc import Sequence
+from io import BytesIO
+from pathlib import Path
+from typing import Any
+
+from skinnet.errors import InputError, NoFaceError
+from skinnet.images._mark import EDITED, Mark, read_mark
+from skinnet.images._result_names import compute_digest, lock_folder
+from skinnet.images._walk import STDIN, Found, Walk, check_mark, find_one, walk
+from skinnet.images._write import choose_suffix, find_format, write_picture
+from skinnet.images.photograph import read_picture
+from skinnet.images.picture import Picture
+from skinnet.inference._messages import note, print_line, report
+from skinnet.inference._own_results import (
+    OUTPUT,
+    Source,
+    choose_edit_target,
+    choose_result_stem,
+)
+from skinnet.inference.decomposer import Decomposer
+from skinnet.inference.decomposition import Decomposition
+from skinnet.inference.results import _list_ends, _make_folder, write_results
+
+_READ, _FACELESS, _WRITTEN_NOT, _READ_NOT = (
+    "read",
+    "without a face",
+    "could not be written",
+    "could not be read",
+)
+"""What becomes of an input, as the count at the end of a run says it."""
+
+
+def predict(options: argparse.Namespace) -> bool:
+    """Decompose every input; report bad inputs and continue. Returns whether none was bad."""
+    decomposer = Decomposer(options.model)
+    decomposer.load()
+    found = walk(options.input, options.recursive)
+    counts: Counter[str] = Counter()
+    for picture in found.pictures:
+        try:
+            counts[_predict_one(decomposer, picture, options)] += 1
+        except BrokenPipeError:
+            raise
+        except (InputError, OSError) as error:
+            counts[_READ_NOT] += 1
+            report(error)
+    for sentence in found.notes:
+        note(sentence)
+    single = len(found.pictures) == 1 and found.pictures[0].path == options.input[0]
+    if not single or found.passed_over or len(options.input) > 1:
+        note(_describe_run(counts, found))
+    return counts.total() == counts[_READ]
+
+
+def _predict_one(decomposer: Decomposer, found: Found, options: argparse.Namespace) -> str:
+    """Decompose a picture, and write its results. Returns under what it is counted."""
+    if found.error is not None:
+        raise found.error
+    source, picture, notes = _read(found)
+    try:
+        decomposition = decomposer(picture, options.whole_image, source.name, options.detail)
+    except NoFaceError as error:
+        report(error)
+        return _FACELESS
+    try:
+        _write(source, picture, decomposition, notes, options)
+    except InputError as error:
+        report(error)
+        return _WRITTEN_NOT
+    return _READ
+
+
+def _write(
+    source: Source,
+    picture: Picture,
+    decomposition: Decomposition,
+    notes: Sequence[str],
+    options: argparse.Namespace,
+) -> None:
+    """Write the results of a photograph under a name that is free or its own, and print them."""
+    folder = _make_folder(options.output or source.folder / OUTPUT)
+    with lock_folder(folder):
+        stem = choose_result_stem(folder, source, _list_ends(decomposition))
+        if stem != source.stem:
+            others = f"{folder} holds other files of the name {source.stem}"
+            notes = (*notes, f"{others}; the results of {source.name} are numbered: {stem}.")
+        summary = {"file": source.name, "input": source.describe(folder)} | decomposition.summary()
+        summary["notes"] = [*notes, *summary["notes"]]
+        count = write_results(folder, stem, picture.srgb, decomposition, summary, source.digest)
+    for sentence in summary["notes"]:
+        note(sentence)
+    if options.json:
+        print_line(json.dumps(summary, allow_nan=False))
+        return
+    written = f"{count} files: {folder / stem}_*.png and {folder / stem}.json"
+    print_line(f"{source.name}: {_describe_skin(summary)}; {written}")
+
+
+def _describe_skin(summary: dict[str, Any]) -> str:
+    means = {pigment: summary["maps"][pigment]["mean"] for pigment in ("melanin", "hemoglobin")}
+    if means["melanin"] is None:
+        return "no skin was found"
+    numbers = ", ".join(f"{pigment} {mean:.3g}" for pigment, mean in means.items())
+    return f"{numbers} on skin, {summary['skin_share']:.0%} of the crop"
+
+
+def _describe_run(counts: Counter[str], found: Walk) -> str:
+    """How many pictures were read, passed over and not read, and the reasons."""
+    parts = [f"{counts[_READ]} {_READ}", f"{len(found.passed_over)} passed over"]
+    parts += [f"{counts[each]} {each}" for each in (_FACELESS, _WRITTEN_NOT) if counts[each]]
+    reasons = found.describe_passed_over()
+    passed_over = f" Passed over: {reasons}." if reasons else ""
+    return f"{', '.join(parts)}, {counts[_READ_NOT]} {_READ_NOT}.{passed_over}"
+
+
+def edit(options: argparse.Namespace) -> None:
+    """Write one photograph with its pigments multiplied."""
+    if options.output is not None:
+        find_format(options.output)
+    decomposer = Decomposer(options.model)
+    source, picture, notes = _read(find_one(options.input))
+    suffix, changes = choose_suffix(picture, "" if source.path is None else source.path.suffix)
+    target = choose_edit_target(source, options.output, suffix)
+    edited = decomposer.edit_picture(
+        picture, options.melanin, options.hemoglobin, options.whole_image, source.name
+    )
+    losses = write_picture(target, edited, Mark("edit", EDITED, source.digest))
+    changes = () if options.output else changes
+    for sentence in (*notes, *edited.notes, *changes, *losses):
+        note(sentence)
+    print_line(f"{source.name}: {target}")
+
+
+def _read(found: Found) -> tuple[Source, Picture, tuple[str, ...]]:
+    """Read a picture, with the record of its file and the notes on it."""
+    if found.path != STDIN:
+        path = Path(found.path)
+        picture = read_picture(path, found.path)
+        return Source(found.path, path, compute_digest(path)), picture, found.notes
+    name, data = "standard input", b"" if sys.stdin is None else sys.stdin.buffer.read()
+    notes = check_mark(read_mark(BytesIO(data)), name)
+    picture = read_picture(BytesIO(data), name)
+    return Source(name, None, hashlib.sha256(data).hexdigest()), picture, notes
