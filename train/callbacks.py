@@ -11,6 +11,7 @@ from lightning.pytorch.loggers import TensorBoardLogger
 from PIL import Image
 from torch import Tensor
 
+from skinnet.images._mark import Mark
 from skinnet.network import F_BLOOD_MAX, F_MEL_MAX, Reading
 from skinnet.physics import to_display
 from train.batch import Batch
@@ -82,7 +83,9 @@ class PictureGrid(Callback):
         )
         self.folder.mkdir(parents=True, exist_ok=True)
         pixels = (picture.permute(1, 2, 0) * 255).round().byte().cpu().numpy()
-        Image.fromarray(pixels).save(self.folder / f"step_{trainer.global_step:06d}.png")
+        mark = Mark("fit", "pictures").to_png_info()  # they are no photographs to train on
+        path = self.folder / f"step_{trainer.global_step:06d}.png"
+        Image.fromarray(pixels).save(path, pnginfo=mark)
         for logger in trainer.loggers:
             if isinstance(logger, TensorBoardLogger):
                 logger.experiment.add_image("portraits", picture, trainer.global_step)

@@ -12,7 +12,7 @@ from io import BufferedIOBase, BytesIO
 from pathlib import Path
 from typing import Any, BinaryIO, NamedTuple
 
-from PIL import Image
+from PIL import Image, PngImagePlugin
 
 from skinnet._version import __version__
 from skinnet.files import READ_ERRORS
@@ -63,6 +63,13 @@ class Mark(NamedTuple):
     def to_text(self) -> dict[str, str]:
         """Return the mark as tEXt chunks of a PNG file, for `write_png`."""
         return {"Software": f"skinnet {self.version}", "skinnet": str(self)}
+
+    def to_png_info(self) -> PngImagePlugin.PngInfo:
+        """Return the mark as Pillow's `pnginfo`."""
+        info = PngImagePlugin.PngInfo()
+        for key, value in self.to_text().items():
+            info.add_text(key, value)
+        return info
 
 
 def append_mark(path: Path, mark: Mark) -> None:

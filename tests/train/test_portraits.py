@@ -15,7 +15,7 @@ from torch.utils.data import DataLoader
 
 from skinnet.errors import InputError
 from skinnet.images import srgb_to_linear, write_png
-from skinnet.images._mark import EDITED, PROCESSING_SOFTWARE, Mark
+from skinnet.images._mark import EDITED, PROCESSING_SOFTWARE, Mark, read_mark
 from skinnet.network import read_checkpoint
 from train.callbacks import LastCheckpoint, PictureGrid
 from train.cli import main
@@ -140,6 +140,7 @@ def test_a_killed_run_goes_on_as_if_it_had_not_been(
 ) -> None:
     whole, parts = tmp_path / "whole", tmp_path / "parts"
     assert fit(photographs, casts, whole) == 0
+    assert all(read_mark(path) is not None for path in (whole / "pictures").iterdir())
     (row,) = rows(whole / "skipped.csv")
     assert row["picture"] == str(photographs / "broken.jpg") and "picture" in row["reason"]
 
