@@ -225,14 +225,29 @@ def test_edit_keeps_what_is_not_skin(edit: Predict, photo: Path, tmp_path: Path)
     assert (after[~same].astype(int) <= before[~same]).all()
 
 
-@pytest.mark.parametrize("suffix", [".jpg", ".JPEG", ".png"])
+def test_edit_says_what_the_format_cannot_hold(
+    edit: Predict, photo: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    cut_out = np.dstack([pixels(photo), np.zeros((256, 256), np.uint8)])
+    cut_out[:, 40:, 3] = 255
+    Image.fromarray(cut_out).save(photo)
+    assert edit(photo, "--melanin", "2") == 0
+    assert capsys.readouterr().err == ""
+    np.testing.assert_array_equal(pixels(tmp_path / "a_edited.png")[..., 3], cut_out[..., 3])
+    assert edit(photo, "--melanin", "2", "-o", tmp_path / "b.jpg") == 0
+    said = f"{tmp_path / 'b.jpg'} is blended with white, since JPEG holds no transparency."
+    assert capsys.readouterr().err == f"skinnet: {said}\n"
+
+
+@pytest.mark.parametrize("suffix", [".jpg", ".JPEG", ".png", ".tif", ".webp"])
 def test_edit_writes_the_format_that_is_asked_for(
     edit: Predict, photo: Path, tmp_path: Path, suffix: str
 ) -> None:
     target = tmp_path / f"b{suffix}"
     assert edit(photo, "--hemoglobin", "2", "-o", target) == 0
     with Image.open(target) as image:
-        assert image.format == ("PNG" if suffix == ".png" else "JPEG")
+        formats = {".png": "PNG", ".tif": "TIFF", ".webp": "WEBP"}
+        assert image.format == formats.get(suffix, "JPEG")
         assert image.size == (256, 256)
 
 

@@ -8,7 +8,7 @@ from PIL import Image
 
 from skinnet import Decomposer, Decomposition
 from skinnet.errors import InputError, NoFaceError
-from skinnet.images import Box, srgb_to_linear
+from skinnet.images import Box, Picture, srgb_to_linear
 from skinnet.inference import open_model
 
 SaveModel = Callable[..., Path]
@@ -145,3 +145,25 @@ def test_lights_that_are_not_weighed_are_refused(
 def test_bad_arrays_are_value_errors(decomposer: Decomposer, image: np.ndarray) -> None:
     with pytest.raises(ValueError, match="A photograph"):
         decomposer(image)
+
+
+@pytest.mark.parametrize("dtype", [np.uint8, np.uint16])
+def test_an_edit_of_a_picture_keeps_its_depth_and_alpha(
+    decomposer: Decomposer, astronaut: np.ndarray, dtype: type
+) -> None:
+    top = np.iinfo(dtype).max
+    pixels = astronaut.astype(dtype) * (top // 255)
+    alpha = np.full(pixels.shape[:2], top, dtype)
+    alpha[:, :200] = 0
+    edited = decomposer.edit_picture(Picture("a", pixels, alpha), 2.0, whole_image=True)
+    assert edited.pixels.dtype == dtype and edited.alpha is alpha
+    np.testing.assert_array_equal(edited.pixels[:, :200], pixels[:, :200])
+    assert (edited.pixels[:, 200:] != pixels[:, 200:]).any()
+
+
+def test_depth_and_colour_space_do_not_change_an_edit(
+    decomposer: Decomposer, astronaut: np.ndarray
+) -> None:
+    right = decomposer.edit(astronaut, 2.0, 1.5).astype(int)
+    deep = Picture("a", astronaut.astype(np.uint16) * 257)
+    assert np.abs(decomposer.edit(deep, 2.0, 1.5) - right).max() <= 1
