@@ -7,14 +7,12 @@ from typing import Any
 from PIL import Image
 
 from skinnet.images._colour_decision import decide_colour_space
-from skinnet.images._exif import PROCESSING_SOFTWARE, update_exif
+from skinnet.images._exif import update_exif
 from skinnet.images._icc import make_srgb_profile
 from skinnet.images._mark import Mark
 from skinnet.images._resources import update_resources
 from skinnet.images._xmp import update_xmp
 from skinnet.images.picture import Picture
-
-_NO_EXIF = frozenset({PROCESSING_SOFTWARE})
 
 
 @dataclass(frozen=True)
@@ -61,7 +59,8 @@ def carry(picture: Picture, mark: Mark | None, in_exif: frozenset[str], name: st
     exif, problems = _carry_exif(
         metadata.get("exif", b""),
         size,
-        str(mark) if mark and "mark" in in_exif else "",
+        # An earlier mark in EXIF must not outlive the edit that it is of.
+        str(mark) if mark and ("mark" in in_exif or metadata.get("exif")) else "",
         dpi if "dpi" in in_exif else None,
     )
     comment = metadata.get("comment", b"")

@@ -837,3 +837,11 @@ def test_an_edit_of_an_edit_carries_one_mark(tmp_path: Path) -> None:
         second, notes = edit(first)
         assert notes == () and second.read_bytes().count(str(MARK).encode()) <= 2
         assert read_mark(second) == MARK
+
+
+@pytest.mark.parametrize("suffix", [".png", ".tif", ".webp", ".jpg", ".bmp"])
+def test_the_mark_is_that_of_the_last_edit(tmp_path: Path, suffix: str) -> None:
+    first, _ = edit(save(tmp_path / "a.jpg", FACE))
+    later = Mark("edit", EDITED, "f" * 64)
+    write_picture(tmp_path / f"b{suffix}", read_picture(first), later)
+    assert read_mark(tmp_path / f"b{suffix}") == later
