@@ -18,6 +18,7 @@ LAYERS = "layers of Photoshop"
 
 _MOST_PADDING = 256
 _KEPT = ("exif", "xmp", "dpi", "comment")
+_XMP_KEY = "XML:com.adobe.xmp"
 _RAW_KEYS = frozenset(f"Raw profile type {name}" for name in ("exif", "APP1", "xmp"))
 """Texts of ImageMagick that hold EXIF or XMP."""
 
@@ -56,8 +57,8 @@ def keep_metadata(image: Image.Image, data: bytes) -> Mapping[str, Any]:
     if reader is not None and data:
         try:
             kept |= reader(image, data, kept)
-        except READ_ERRORS:  # damaged metadata; the pixels are read all the same
-            pass
+        except READ_ERRORS:  # the pixels are read all the same
+            kept["companions"] = ("damaged metadata",)
     companions = (*kept.pop("companions", ()), *find_companions(kept.get("xmp", b"")))
     if companions:
         kept["companions"] = tuple(dict.fromkeys(companions))
@@ -104,24 +105,34 @@ def _has_trailer(data: bytes) -> bool:
 def _keep_png(image: Image.Image, data: bytes, kept: Mapping[str, Any]) -> dict[str, Any]:
     chunks = list(_chunks.list_chunks(data))
     found: dict[str, Any] = {"chunks": chunks, "text": {}}
+    lost = [CREDENTIALS] if any(name == b"caBX" for name, _ in chunks) else []
     for chunk in chunks:
-        if chunk[0] == b"eXIf":
-            found["exif"] = strip_prefix(chunk[1])
-        key = _chunks.read_key(chunk)
-        if key in _RAW_KEYS:
-            raw = _chunks.decode_raw_profile(_chunks.read_text(chunk))
-            if raw.startswith(_segments.EXIF_PREFIX) and "exif" not in found:
-                found["exif"] = strip_prefix(raw)
-            elif not raw.startswith(_segments.EXIF_PREFIX):
-                found.setdefault("xmp", raw.removeprefix(_segments.XMP_PREFIX))
-        elif key == "XML:com.adobe.xmp":
-            found["xmp"] = _chunks.read_text(chunk)
-        elif key and not key.startswith("Raw profile"):
-            encoding = "utf-8" if chunk[0] == b"iTXt" else "latin-1"
-            found["text"][key] = _chunks.read_text(chunk).decode(encoding, "replace")
-    if any(name == b"caBX" for name, _ in chunks):
-        found["companions"] = (CREDENTIALS,)
-    return found
+        try:
+            _add_chunk(chunk, found)
+        except (ValueError, IndexError):
+            key = _chunks.read_key(chunk)
+            if key in _RAW_KEYS or key == _XMP_KEY:
+                lost.append(f"damaged text ({key})")
+            else:
+                found["text"][key] = ""
+    return found | {"companions": tuple(lost)}
+
+
+def _add_chunk(chunk: _chunks.Chunk, found: dict[str, Any]) -> None:
+    if chunk[0] == b"eXIf":
+        found["exif"] = strip_prefix(chunk[1])
+    key = _chunks.read_key(chunk)
+    if key in _RAW_KEYS:
+        raw = _chunks.decode_raw_profile(_chunks.read_text(chunk))
+        if not raw.startswith(_segments.EXIF_PREFIX):
+            found.setdefault("xmp", raw.removeprefix(_segments.XMP_PREFIX))
+        elif "exif" not in found:
+            found["exif"] = strip_prefix(raw)
+    elif key == _XMP_KEY:
+        found["xmp"] = _chunks.read_text(chunk)
+    elif key and not key.startswith("Raw profile"):
+        encoding = "utf-8" if chunk[0] == b"iTXt" else "latin-1"
+        found["text"][key] = _chunks.read_text(chunk).decode(encoding, "replace")
 
 
 def _keep_tiff(image: Image.Image, data: bytes, kept: Mapping[str, Any]) -> dict[str, Any]:

@@ -845,3 +845,26 @@ def test_the_mark_is_that_of_the_last_edit(tmp_path: Path, suffix: str) -> None:
     later = Mark("edit", EDITED, "f" * 64)
     write_picture(tmp_path / f"b{suffix}", read_picture(first), later)
     assert read_mark(tmp_path / f"b{suffix}") == later
+
+
+def test_a_damaged_text_takes_no_other_chunk_with_it(tmp_path: Path) -> None:
+    chunks = [(b"zTXt", b"Title\0\0no zlib"), (b"tEXt", b"Author\0A. Person")]
+    (tmp_path / "a.png").write_bytes(make_png(FACE, *chunks))
+    path, notes = edit(tmp_path / "a.png")
+    assert notes == () and all(body in path.read_bytes() for _, body in chunks)
+    _, notes = edit(tmp_path / "a.png", ".tif")
+    assert "texts (Title, Author)" in notes[0]
+    broken = (b"tEXt", b"Raw profile type exif\0\nexif\n 4\nzz\n")
+    (tmp_path / "a.png").write_bytes(make_png(FACE, broken))
+    assert "damaged text (Raw profile type exif)" in edit(tmp_path / "a.png")[1][0]
+
+
+@pytest.mark.parametrize("kind", ["xmp", "APP1"])
+def test_xmp_that_imagemagick_wrote_is_kept(tmp_path: Path, kind: str) -> None:
+    packet = (b"http://ns.adobe.com/xap/1.0/\0" if kind == "APP1" else b"") + XMP
+    text = f"\n{kind}\n{len(packet):8}\n{packet.hex()}\n".encode()
+    chunk = (b"zTXt", f"Raw profile type {kind}".encode() + b"\0\0" + zlib.compress(text))
+    (tmp_path / "a.png").write_bytes(make_png(FACE, chunk))
+    path, notes = edit(tmp_path / "a.png")
+    with Image.open(path) as image:
+        assert image.info["xmp"] == XMP and notes == ()
