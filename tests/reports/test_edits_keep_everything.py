@@ -188,7 +188,7 @@ DEPTHS += [(".webp", np.uint8), (".jpg", np.uint8), (".avif", np.uint8)]
 
 
 @pytest.mark.parametrize("alpha", [False, True])
-@pytest.mark.parametrize("space", PROFILES)
+@pytest.mark.parametrize("space", ["Display P3", "Adobe RGB (1998)"])
 @pytest.mark.parametrize(("suffix", "dtype"), DEPTHS)
 def test_profile_depth_alpha_and_colours(
     tmp_path: Path, suffix: str, dtype: type, space: str, alpha: bool
@@ -318,7 +318,7 @@ def test_maker_notes_stay_at_their_offset_and_the_thumbnail_goes(tmp_path: Path)
 EXIF_ONLY = [{"a001": 65535, "a005": {1: "R03"}}, {"a001": 2}, {"a001": 65535}]
 
 
-@pytest.mark.parametrize("target", [None, ".png", ".tif", ".webp", ".jpg"])
+@pytest.mark.parametrize("target", [None, ".png", ".tif", ".jpg"])
 @pytest.mark.parametrize("inner", EXIF_ONLY)
 @pytest.mark.parametrize("suffix", [".jpg", ".png", ".webp"])
 def test_adobe_rgb_that_exif_alone_states_stays_adobe_rgb(
@@ -724,7 +724,7 @@ def test_a_transparent_colour_of_16_bits_stays_transparent(tmp_path: Path) -> No
 @pytest.mark.parametrize("bits", [10, 12])
 def test_a_depth_that_is_read_as_8_bits_is_said(tmp_path: Path, bits: int) -> None:
     stored = encode("sRGB", np.uint16) >> (16 - bits)
-    content = imagecodecs.avif_encode(stored, bitspersample=bits, level=95)
+    content = imagecodecs.avif_encode(stored, bitspersample=bits, level=95, speed=10)
     (tmp_path / "a.avif").write_bytes(content)
     _, notes = edit(tmp_path / "a.avif")
     assert f"{bits} bits a channel, of which 8 are read" in notes[0]
