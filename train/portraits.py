@@ -27,6 +27,7 @@ from skinnet.images import (
     srgb_to_linear,
     to_uint8,
 )
+from skinnet.images._colour_content import find_tone
 from skinnet.images._walk import Found, Walk, walk
 from train.batch import Batch
 from train.guards import list_names
@@ -35,6 +36,9 @@ from train.synthetic.faces import SyntheticFaces
 from train.synthetic.scene import SceneParameters
 
 Share = restricted_number_type("Share", float, [(">=", 0), ("<", 1)])
+
+_NO_COLOUR = "It has no colour"
+"""Begin of the reason for which grey and toned pictures are skipped."""
 
 EXPOSURE_SD, WHITE_BALANCE_SD = 0.4, 0.03
 """Standard deviations of the augmentation, in logarithms: of all channels, and of R/G and B/G."""
@@ -241,7 +245,8 @@ def find_crops(
         raise InputError(
             f"{folder} holds no photograph with a face in it ({len(pictures)} pictures searched)."
         )
-    _report(folder, len(crops), unreadable, len(skipped) - len(unreadable), walked)
+    colourless = sum(each.reason.startswith(_NO_COLOUR) for each in skipped)
+    _report(folder, len(crops), unreadable, len(skipped) - len(unreadable), colourless, walked)
     return crops, skipped + [
         Skipped(Path(path), f"It is {kind.one}; {kind.remedy}.", readable=True)
         for path, kind in walked.passed_over
@@ -289,9 +294,12 @@ def _describe_unreadable(folder: Path, unreadable: list[str], pictures: int, all
 
 
 @rank_zero_only
-def _report(folder: Path, faces: int, unreadable: list[str], faceless: int, walked: Walk) -> None:
-    summary = f"{folder}: {faces} faces, {len(unreadable) + faceless} pictures skipped"
-    parts = [f"{faceless} without a face"] if faceless else []
+def _report(
+    folder: Path, faces: int, unreadable: list[str], unusable: int, colourless: int, walked: Walk
+) -> None:
+    summary = f"{folder}: {faces} faces, {len(unreadable) + unusable} pictures skipped"
+    counts = {"without a face": unusable - colourless, "without colour": colourless}
+    parts = [f"{count} {fault}" for fault, count in counts.items() if count]
     if unreadable:
         parts.append(f"{len(unreadable)} unreadable: {list_names(unreadable, 10)}")
     lines = [f"{summary} ({'; '.join(parts)})" if parts else summary]
@@ -313,6 +321,9 @@ def _crop_face(found: Found, size: int) -> Crop | Skipped:
     if face is None:
         return Skipped(path, "No face was found in it.", readable=True)
     box = frame_head(face, photo.shape[1], photo.shape[0])
+    tone = find_tone(photo, box, face)
+    if tone is not None:
+        return Skipped(path, f"{_NO_COLOUR}: {tone}.", readable=True)
     mask = segment_skin(photo, face)[box.slices]
     scale = size / max(box.width, box.height)
     width, height = max(1, round(box.width * scale)), max(1, round(box.height * scale))

@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 from PIL import Image
 
 from skinnet.errors import InputError, NoFaceError
+from skinnet.images._colour_content import check_colour
 from skinnet.images.box import Box
 from skinnet.images.faces import find_face, frame_head
 from skinnet.images.photograph import read_picture
@@ -109,7 +110,8 @@ class Decomposer:
             Maps of the photograph's size, light and camera.
 
         Raises:
-            InputError: The image or a model file cannot be used.
+            InputError: The image or a model file cannot be used, or the image has no colour: it is
+                grey, or toned in sepia, cyanotype and the like.
             NoFaceError: No face was found.
         """
         picture = _as_picture(image)
@@ -158,7 +160,8 @@ class Decomposer:
             The edited photograph, uint8 sRGB [H, W, 3].
 
         Raises:
-            InputError: A factor, the image or a model file cannot be used.
+            InputError: A factor, the image or a model file cannot be used, or the image has no
+                colour.
             NoFaceError: No face was found.
 
         Example:
@@ -194,7 +197,7 @@ class Decomposer:
             The edited picture. Pixels that are not skin keep their stored values.
 
         Raises:
-            InputError: A factor or a model file cannot be used.
+            InputError: A factor or a model file cannot be used, or the picture has no colour.
             NoFaceError: No face was found.
 
         Example:
@@ -279,15 +282,15 @@ def _check_factors(**factors: float) -> None:
 
 def _choose_box(photo: NDArray[np.uint8], whole_image: bool, name: str) -> Box:
     height, width = photo.shape[:2]
-    if whole_image:
-        return Box(0, 0, width, height)
-    face = find_face(photo)
-    if face is None:
+    face = None if whole_image else find_face(photo)
+    if face is None and not whole_image:
         raise NoFaceError(
             f"No face was found in {name}; faces must be frontal and upright. --whole-image "
             "(in Python whole_image=True) decomposes it without a face."
         )
-    return frame_head(face, width, height)
+    box = Box(0, 0, width, height) if face is None else frame_head(face, width, height)
+    check_colour(photo, box, face, name)
+    return box
 
 
 def _as_picture(image: ImageLike) -> Picture:

@@ -149,7 +149,7 @@ def test_without_a_face_the_option_is_named(
     predict: Predict, tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
     wall = tmp_path / "wall.png"
-    Image.new("RGB", (80, 60), "white").save(wall)
+    Image.new("RGB", (80, 60), "bisque").save(wall)
     assert predict(wall) == 2
     assert names(tmp_path) == ["wall.png"]
     assert f"No face was found in {wall}" in (err := capsys.readouterr().err)

@@ -11,6 +11,7 @@ import torch
 from lightning import Trainer
 from PIL import Image
 from skimage.data import astronaut
+from toned_pictures import TONES
 from torch.utils.data import DataLoader
 
 from skinnet.errors import InputError
@@ -54,6 +55,22 @@ def test_pictures_without_a_face_are_skipped_and_counted(
     (message,) = capsys.readouterr().err.splitlines()
     assert "1 faces, 2 pictures skipped" in message
     assert "1 without a face; 1 unreadable" in message and "broken.jpg" in message
+
+
+def test_pictures_without_colour_are_skipped_and_counted(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    Image.fromarray(astronaut()).save(tmp_path / "a.png")
+    Image.fromarray(astronaut()).convert("L").save(tmp_path / "grey.png")
+    Image.fromarray(TONES["sepia"](astronaut())).save(tmp_path / "sepia.jpg")
+    crops, skipped = find_crops(tmp_path, 32, unreadable_share=0.0)
+    assert len(crops) == 1
+    assert [each.path.name for each in skipped] == ["grey.png", "sepia.jpg"]
+    grey, sepia = (each.reason for each in skipped)
+    assert grey == "It has no colour: the skin in it is grey."
+    assert sepia.startswith("It has no colour: it has one tone of brown")
+    message = capsys.readouterr().err
+    assert "1 faces, 2 pictures skipped (2 without colour)" in message
 
 
 def test_more_unreadable_pictures_than_the_share_are_refused(tmp_path: Path) -> None:

@@ -108,7 +108,8 @@ def test_the_decomposer_adds_detail_where_there_is_some(
 def test_detail_needs_no_torch(model_file: Path) -> None:
     program = (
         "import sys\nimport numpy as np\nfrom skinnet import Decomposer\n"
-        f"Decomposer({str(model_file)!r})(np.full((200, 200, 3), 180, np.uint8), True)\n"
+        "patch = np.full((200, 200, 3), (200, 150, 130), np.uint8)\n"
+        f"Decomposer({str(model_file)!r})(patch, True)\n"
         "print('torch' in sys.modules or 'jaxtyping' in sys.modules)"
     )
     done = subprocess.run([sys.executable, "-c", program], capture_output=True, text=True)
