@@ -24,8 +24,13 @@ _LUMA_CHROMA = np.array(
 )
 """Y, Cb and Cr of R, G and B (JFIF)."""
 
-_SKIN_AREAS = ((0.18, 0.5, 0.38, 0.7), (0.62, 0.5, 0.82, 0.7), (0.42, 0.4, 0.58, 0.62))
-"""Cheeks and nose: left, top, right and bottom in sides of the face's box."""
+_SKIN_AREAS = (
+    (0.18, 0.5, 0.38, 0.7),
+    (0.62, 0.5, 0.82, 0.7),
+    (0.42, 0.4, 0.58, 0.62),
+    (0.35, 0.1, 0.65, 0.22),
+)
+"""Cheeks, nose and forehead: left, top, right and bottom in sides of the face's box."""
 
 _FACE_MARGIN = 1.25
 """Side of the region of the face alone, in sides of its box: a wall behind it may be coloured."""
@@ -100,7 +105,7 @@ def find_tone(photo: NDArray[np.uint8], box: Box, face: Box | None) -> str | Non
     head = _average(photo[box.slices])
     if face is None:
         return _find_tone_anywhere(photo[box.slices], head)
-    skin = _log_ratios(_average_skin(photo, face))
+    skin = _find_skin(photo, face)
     if np.hypot(*skin) < _GREY:
         return "the skin in it is grey"
     height, width = photo.shape[:2]
@@ -133,9 +138,17 @@ def _find_tone_anywhere(region: NDArray[np.uint8], cells: _Cells) -> str | None:
 
 def _has_colour_of_skin(ratios: NDArray[np.float32]) -> bool:
     """Whether a colour may be that of a patch of skin, which lies on one curve as well."""
+    is_red = ratios[0] > _MUCH_RED and ratios[1] < _MOST_BLUE
+    return bool(is_red or _measure_distance(ratios[None])[0] < _SKIN_DISTANCE)
+
+
+def _measure_distance(ratios: NDArray[np.float32]) -> NDArray[np.float64]:
+    """Measure squared Mahalanobis distances [n] of colours [n, 2] from skin."""
     difference = ratios - _SKIN
-    distance = difference @ _SKIN_PRECISION @ difference
-    return bool(distance < _SKIN_DISTANCE or (ratios[0] > _MUCH_RED and ratios[1] < _MOST_BLUE))
+    distance: NDArray[np.float64] = np.einsum(
+        "ni,ij,nj->n", difference, _SKIN_PRECISION, difference
+    )
+    return distance
 
 
 def _fit_tone(
@@ -211,14 +224,14 @@ def _curve_table() -> NDArray[np.float32]:
     return np.array([np.interp(levels, knots, unit) for unit in np.eye(_KNOTS)], np.float32).T
 
 
-def _average_skin(photo: NDArray[np.uint8], face: Box) -> NDArray[np.float32]:
-    """Mean linear RGB of cheeks and nose."""
+def _find_skin(photo: NDArray[np.uint8], face: Box) -> NDArray[np.float32]:
+    """Colour of the area that is most like skin: cloth or hair may cover the others."""
     step = max(1, face.width // 100)
     areas = [photo[_place_area(face, area).slices][::step, ::step] for area in _SKIN_AREAS]
-    mean: NDArray[np.float32] = srgb_to_linear(
-        np.concatenate([area.reshape(-1, 3) for area in areas])
-    ).mean(0)
-    return mean
+    means = [srgb_to_linear(area).mean((0, 1)) for area in areas if area.size]
+    ratios = _log_ratios(np.array(means))
+    skin: NDArray[np.float32] = ratios[_measure_distance(ratios).argmin()]
+    return skin
 
 
 def _place_area(face: Box, area: tuple[float, float, float, float]) -> Box:

@@ -77,6 +77,13 @@ def test_the_tone_is_named(tone: str, words: str) -> None:
         assert found is not None and words in found
 
 
+@pytest.mark.parametrize("cloth", [(235, 235, 230), (150, 190, 215), (150, 200, 180), (35, 35, 38)])
+def test_a_face_behind_a_mask_of_cloth_is_read(cloth: tuple[int, int, int]) -> None:
+    photo = make_colour()
+    photo[116:170, 132:218] = to_uint8(np.linspace(0.8, 1, 54)[:, None, None] * cloth)
+    assert find_tone(photo, frame_head(FACE, 350, 300), FACE) is None
+
+
 def test_a_grey_wall_is_no_skin() -> None:
     assert find_tone_anywhere(np.full((90, 120, 3), 200, np.uint8)) == "it is grey"
     assert find_tone_anywhere(cast(1.02, 1, 0.98)(make_colour())) is not None
