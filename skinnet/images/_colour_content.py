@@ -55,6 +55,9 @@ _ON_CURVE = -2.4
 """Log of residuals (90 %) over chroma (75 %) below which a region is toned, however strong its
 tones; the least of the portraits is -1.8."""
 
+_BLACK, _EXACT = 8.0, 0.6
+"""Luma below which cells of a texture do not count, and largest residual of exact tones."""
+
 _SKIN, _SKIN_PRECISION = np.array([0.757, -0.296]), np.array([[37.1, 13.6], [13.6, 33.4]])
 _SKIN_DISTANCE, _LEAST_RED, _MUCH_RED, _MOST_BLUE = 12.0, 0.15, 0.85, 0.2
 """log R/G and log B/G of skin in portraits: mean, inverse covariance, squared distance of 99 %, and
@@ -116,6 +119,22 @@ def find_tone(photo: NDArray[np.uint8], box: Box, face: Box | None) -> str | Non
     return tone
 
 
+def find_tone_of_texture(texture: NDArray[np.uint8]) -> str | None:
+    """Name the one tone of a texture without colour; None for others.
+
+    A texture may show nothing but skin, so only exact tones are found, on cells that are not black.
+    """
+    cells = _average(texture)
+    ratios = _log_ratios(srgb_to_linear(_divide(texture)[0]).mean(1))
+    lit = cells.luma > _BLACK
+    if not lit.any() or np.percentile(np.hypot(*ratios[lit].T), 98) < _GREY:
+        return "grey"
+    is_varied = lit.sum() >= _CELLS and np.ptp(cells.luma[lit]) > _BLACK
+    if is_varied and np.percentile(_fit_curve(cells)[lit], 95) < _EXACT:
+        return _name_tint(cells)
+    return None
+
+
 def _find_tone_anywhere(region: NDArray[np.uint8], cells: _Cells) -> str | None:
     """Find the tone of a whole picture. A face is searched for only where there is a doubt."""
     ratios = _log_ratios(srgb_to_linear(_divide(region)[0]).mean(1))
@@ -158,10 +177,16 @@ def _fit_tone(
     measured = _measure(cells, residuals, skin)
     if measured @ weights > limit and measured[1] - measured[2] > _ON_CURVE:
         return None
-    cb, cr = cells.chroma.mean(0)
-    tint = _TINTS[round(float(np.arctan2(-cb, cr)) / (np.pi / 4)) % 8]
     distance = np.median(residuals)
-    return f"it has one tone of {tint}; its pixels lie {distance:.1f} of 255 levels from it"
+    return (
+        f"it has one tone of {_name_tint(cells)}; its pixels lie {distance:.1f} of 255 levels "
+        "from it"
+    )
+
+
+def _name_tint(cells: _Cells) -> str:
+    cb, cr = cells.chroma.mean(0)
+    return _TINTS[round(float(np.arctan2(-cb, cr)) / (np.pi / 4)) % 8]
 
 
 def _measure(

@@ -7,6 +7,7 @@ import numpy as np
 from jaxtyping import Bool, Float, Int
 
 from skinnet.errors import InputError
+from skinnet.images._colour_content import find_tone_of_texture
 from skinnet.mesh._orientation import (
     compute_areas,
     find_inconsistent_faces,
@@ -250,8 +251,11 @@ def _check_texture(mesh: Mesh) -> RepairedMesh:
     elif min(texture.shape[:2]) < PLACEHOLDER:
         size = f"{texture.shape[1]} x {texture.shape[0]}"
         fault = f"a texture of {size} pixels, a placeholder; give the picture's path"
-    elif (texture == texture[..., :1]).all():
-        fault = "a grey texture; melanin and hemoglobin are read from colour, give another texture"
+    elif (tone := find_tone_of_texture(texture)) is not None:
+        fault = (
+            f"a {tone} texture, without other colours; melanin and hemoglobin are read from "
+            "colour, give another texture"
+        )
     else:
         return _wrap_texture(mesh, uv, triangles)
     raise InputError(f"{mesh.name} has {fault}.")

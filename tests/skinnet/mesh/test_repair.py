@@ -7,6 +7,7 @@ import numpy as np
 import pytest
 import trimesh
 from small_meshes import dome, moebius_strip
+from toned_pictures import TONES, make_colour
 
 from skinnet.errors import InputError
 from skinnet.mesh._orientation import is_inside_out
@@ -141,12 +142,15 @@ def test_a_texture_is_needed_only_on_request() -> None:
     bare = Mesh(mesh.vertices, mesh.triangles, name="scan.ply")
     assert repair_mesh(bare).notes == []
     grey = np.repeat(mesh.texture[..., :1], 3, 2)
+    portrait = make_colour()
     cases = {
         "no texture coordinates": bare,
         "NaN": replace(mesh, uv=mesh.uv * np.nan),
         "no texture: its material names no picture": replace(mesh, texture=None),
         "2 x 3 pixels, a placeholder": replace(mesh, texture=mesh.texture[:3, :2]),
         "a grey texture": replace(mesh, texture=grey),
+        r"a brown \(sepia\) texture": replace(mesh, texture=TONES["brown sepia"](portrait)),
+        r"a blue \(cyanotype\) texture": replace(mesh, texture=TONES["cyanotype"](portrait)),
     }
     for fault, case in cases.items():
         with pytest.raises(InputError, match=f"{case.name} has .*{fault}"):
