@@ -39,6 +39,11 @@ MAX_FACTOR = 10.0
 _MIN_SIDE = 16
 """Smallest side, in pixels, of the encoder's input."""
 
+_WHOLE_IMAGE = (
+    "The whole image was read, without a search for a face. The network learnt from faces: melanin "
+    "of a bare patch of skin can be a third more or less than that of the same skin in its face."
+)
+
 ImageLike = str | Path | Image.Image | NDArray[Any] | Picture
 _Arrays = Mapping[str, NDArray[np.float32]]
 
@@ -125,7 +130,7 @@ class Decomposer:
             camera=_name_camera(encoder_outputs),
             box=box,
             colour_space=picture.colour_space,
-            notes=picture.notes,
+            notes=(*picture.notes, *([_WHOLE_IMAGE] if whole_image else [])),
             output_info=self.encoder.output_info,
             model={
                 "version": self.encoder.version,

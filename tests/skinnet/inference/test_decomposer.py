@@ -66,7 +66,9 @@ def test_without_a_face_nothing_is_guessed(decomposer: Decomposer, tmp_path: Pat
         decomposer(tmp_path / "wall.png")
     with pytest.raises(NoFaceError, match="No face was found in the image"):
         decomposer.edit(wall, 2.0)
-    assert decomposer(wall, whole_image=True).box == Box(0, 0, 120, 90)
+    read = decomposer(wall, whole_image=True)
+    assert read.box == Box(0, 0, 120, 90)
+    assert "bare patch of skin" in read.notes[-1]
 
 
 @pytest.mark.parametrize("shape", [(1, 1), (1, 300), (37, 53), (200, 90)])
