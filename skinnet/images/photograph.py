@@ -95,8 +95,8 @@ def as_photo(image: str | Path | Image.Image | NDArray[Any]) -> NDArray[np.uint8
     Args:
         image: A path, a Pillow image, or an sRGB array [H, W], [H, W, 1], [H, W, 3] or [H, W, 4] of
             uint8 or of floats in [0, 1]. Transparent pixels are blended with white. The orientation
-            that a Pillow image carries is applied; remove the tag if you have turned it yourself. Grey
-            pictures are converted too, but a `Decomposer` does not read them.
+            that a Pillow image carries is applied; remove the tag if you have turned it yourself.
+            Grey pictures are converted too, but a `Decomposer` does not read them.
 
     Returns:
         uint8 sRGB [H, W, 3].
