@@ -147,7 +147,10 @@ def _colour_group(file: GltfFile, group: _Group, material: Material) -> list[Mes
         plain = to_uint8(linear_to_srgb(np.ones((_BAKED, _BAKED, 3)) * material.factor))
         baked = _bake(group, mapped, plain)
         if baked is not None:
-            file.notes.append(f"{file.path}: the texture of {material.name} is its vertex colours.")
+            file.notes.append(
+                f"{file.path}: the texture of {material.name} is made of its vertex colours "
+                "(COLOR_0), which are linear by glTF."
+            )
             return [_convert(each, baked, material) for each in mapped]
     file.notes.append(f"{file.path}: the vertex colours of {material.name} are averaged.")
     pairs = zip(group.primitives, group.colours, strict=True)

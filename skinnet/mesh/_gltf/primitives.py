@@ -12,6 +12,7 @@ from skinnet.mesh._gltf.nodes import Instance, Transform
 from skinnet.mesh._gltf.skins import compute_skinning
 from skinnet.mesh._mesh_parts import MeshGeometry, check_range
 
+_READ = ("POSITION", "TEXCOORD", "COLOR")
 _TRIANGLES, _STRIP, _FAN = 4, 5, 6
 
 # Primitives have different numbers of vertices.
@@ -37,7 +38,7 @@ def read_primitives(
         attributes = primitive.get("attributes", {})
         if "POSITION" not in attributes:
             continue
-        _refuse_compressed(file, primitive)
+        _check_data(file, primitive)
         vertices = _read_positions(
             file, primitive, instance.node.get("weights", mesh.get("weights"))
         )
@@ -66,11 +67,17 @@ def read_attribute(file: GltfFile, primitive: Primitive, name: str) -> Float[np.
     return checked
 
 
-def _refuse_compressed(file: GltfFile, primitive: dict[str, Any]) -> None:
-    numbers = [*primitive["attributes"].values(), primitive.get("indices")]
-    accessors = [file.get("accessors", number) for number in numbers if number is not None]
-    if any("bufferView" not in accessor and "sparse" not in accessor for accessor in accessors):
-        refuse_compression(file.path, primitive)
+def _check_data(file: GltfFile, primitive: dict[str, Any]) -> None:
+    """Raise `InputError` if what is read of a primitive is not there, or only compressed."""
+    attributes = primitive["attributes"]
+    numbers = [attributes[name] for name in attributes if name.startswith(_READ)]
+    numbers += [primitive["indices"]] if "indices" in primitive else []
+    accessors = [file.get("accessors", number) for number in numbers]
+    if all("bufferView" in accessor or "sparse" in accessor for accessor in accessors):
+        return
+    refuse_compression(file.path, primitive)
+    names = ", ".join(primitive.get("extensions", {})) or "no extension"
+    raise file.damage(f"a mesh has no data for its vertices, and states {names} in their place")
 
 
 def _read_positions(

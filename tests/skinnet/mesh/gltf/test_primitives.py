@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 from gltf_files import SQUARE, GltfBuilder
 
+from skinnet.errors import InputError
 from skinnet.mesh._gltf.container import open_gltf
 from skinnet.mesh._gltf.nodes import Instance
 from skinnet.mesh._gltf.primitives import Primitive, read_attribute, read_primitives
@@ -59,3 +60,16 @@ def test_integer_colours_are_fractions_and_integer_coordinates_are_not(tmp_path:
     file = open_gltf(tmp_path / "a.glb")
     assert read_attribute(file, found, "COLOR_0").max() == 1
     assert read_attribute(file, found, "TEXCOORD_0").max() == 255
+
+
+@pytest.mark.parametrize("name", ["POSITION", "TEXCOORD_0", "indices"])
+def test_vertices_without_data_are_damage(tmp_path: Path, name: str) -> None:
+    made = GltfBuilder()
+    one = made.add_square()
+    number = one["indices"] if name == "indices" else one["attributes"][name]
+    del made.document["accessors"][number]["bufferView"]
+    with pytest.raises(InputError, match="no data for its vertices, and states no extension"):
+        read(made, tmp_path)
+    one["extensions"] = {"ACME_packed": {}}
+    with pytest.raises(InputError, match="ACME_packed"):
+        read(made, tmp_path)
