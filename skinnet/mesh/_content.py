@@ -3,18 +3,16 @@
 from dataclasses import replace
 from pathlib import Path
 
-import numpy as np
-
 from skinnet.mesh._gltf.content import read_gltf
 from skinnet.mesh._mesh_parts import (
     MeshContent,
     check_mesh_file,
     concatenate,
-    read_parts,
 )
 from skinnet.mesh._obj_content import read_obj_content
 from skinnet.mesh._ply_content import read_ply_content
 from skinnet.mesh._seams import merge_coordinates, merge_vertices
+from skinnet.mesh._stl import read_stl_content
 from skinnet.mesh._texture_atlas import pack_atlas
 from skinnet.mesh._texture_file import Texture
 from skinnet.mesh.mesh import Mesh
@@ -24,6 +22,7 @@ _READERS = {
     ".ply": read_ply_content,
     ".glb": read_gltf,
     ".gltf": read_gltf,
+    ".stl": read_stl_content,
 }
 
 
@@ -39,11 +38,7 @@ def read_content(path: Path, given: Texture | None = None, textured: bool = True
         InputError: For a file that is missing, of another kind, damaged, or without triangles.
     """
     check_mesh_file(path)
-    reader = _READERS.get(path.suffix.lower())
-    if reader is not None:
-        return reader(path, given, textured)
-    # STL holds no texture coordinates.
-    return MeshContent(read_parts(path), [], False, np.zeros((0, 3)))
+    return _READERS[path.suffix.lower()](path, given, textured)
 
 
 def join_parts(path: Path, content: MeshContent) -> Mesh:

@@ -7,6 +7,7 @@ from typing import NamedTuple
 import numpy as np
 from jaxtyping import Bool, Float, Int
 
+from skinnet.mesh._face_parts import Faces
 from skinnet.mesh._obj_lines import (
     Lines,
     convert,
@@ -58,14 +59,10 @@ class Corners(NamedTuple):
 class ObjFile(NamedTuple):
     """What an OBJ file says.
 
-    `material` is the place in `materials` of each triangle's, -1 before the first. Indices of
-    texture coordinates are -1 where a triangle has none.
+    `material` is the place in `materials` of each triangle's, -1 before the first.
     """
 
-    vertices: Float[np.ndarray, "vertices 3"]
-    coordinates: Float[np.ndarray, "coordinates 2"]
-    triangles: Int[np.ndarray, "triangles 3"]
-    uv_triangles: Int[np.ndarray, "triangles 3"]
+    faces: Faces
     material: Int[np.ndarray, "triangles"]
     materials: list[Statement]
     libraries: list[Statement]
@@ -98,7 +95,8 @@ def read_obj(path: Path) -> ObjFile:
     uv = corners.coordinate[cut]
     uv = np.where((uv < 0).any(1, keepdims=True), -1, uv)
     return ObjFile(
-        *(vertices, coordinates, corners.vertex[cut], uv, used[face].astype(np.int64)),
+        Faces(vertices, coordinates, corners.vertex[cut], uv),
+        used[face].astype(np.int64),
         *(materials, libraries, notes + more),
     )
 

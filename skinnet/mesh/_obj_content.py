@@ -4,19 +4,17 @@ from pathlib import Path
 from typing import NamedTuple
 
 import numpy as np
-from jaxtyping import Bool, Int, UInt8
+from jaxtyping import Int, UInt8
 
 from skinnet.errors import InputError
+from skinnet.mesh._face_parts import GREY, make_bare_parts, make_part
 from skinnet.mesh._material_picture import PictureReader, describe_other_pictures
 from skinnet.mesh._materials import Material, Placement
-from skinnet.mesh._mesh_parts import MeshContent, MeshGeometry, MeshPart, refuse_points
+from skinnet.mesh._mesh_parts import MeshContent, MeshPart, refuse_points
 from skinnet.mesh._obj import ObjFile, read_obj
 from skinnet.mesh._obj_library import Library, read_library
 from skinnet.mesh._texture_file import Texture
 from skinnet.mesh._texture_wrap import Mapped, Wrap, wrap_texture
-
-GREY = np.array([102, 102, 102], np.uint8)
-"""Colour of a part whose material states none."""
 
 
 class _Group(NamedTuple):
@@ -41,12 +39,10 @@ def read_obj_content(
             beside others with a picture, and for a picture that is missing or cannot be used.
     """
     file = read_obj(path)
-    if not len(file.triangles):
-        raise refuse_points(path, len(file.vertices))
+    if not len(file.faces.triangles):
+        raise refuse_points(path, len(file.faces.vertices))
     if not textured:
-        every = np.ones(len(file.triangles), bool)
-        bare = [_make_part(file, every, mapped) for mapped in (True, False)]
-        return MeshContent([each for each in bare if each], file.notes, False, file.vertices)
+        return MeshContent(make_bare_parts(file.faces), file.notes, False, file.faces.vertices)
     library = _read_library(path, file, given)
     groups = _group(file, library)
     notes = file.notes + library.notes
@@ -54,7 +50,7 @@ def read_obj_content(
         parts = _add_pictures(path, groups, library, notes)
     else:
         parts = [_place(each.part, _read_placement(each.material), given) for each in groups]
-    return MeshContent(parts, notes, library.names_pictures, file.vertices)
+    return MeshContent(parts, notes, library.names_pictures, file.faces.vertices)
 
 
 def _group(file: ObjFile, library: Library) -> list[_Group]:
@@ -64,29 +60,11 @@ def _group(file: ObjFile, library: Library) -> list[_Group]:
     groups = []
     for value in dict.fromkeys(place.tolist()):
         for mapped in (True, False):
-            part = _make_part(file, place == value, mapped)
+            part = make_part(file.faces, place == value, mapped)
             if part is not None:
                 colour = _compute_colour(materials[value])
                 groups.append(_Group(materials[value], part._replace(colour=colour)))
     return groups
-
-
-def _make_part(
-    file: ObjFile, chosen: Bool[np.ndarray, "triangles"], mapped: bool
-) -> MeshPart | None:
-    """Make a part of the chosen triangles that have texture coordinates, or of those without."""
-    chosen = chosen & ((file.uv_triangles[:, 0] >= 0) == mapped)
-    if not chosen.any():
-        return None
-    triangles = file.triangles[chosen]
-    if not mapped:
-        used, place = np.unique(triangles, return_inverse=True)
-        geometry = MeshGeometry(file.vertices[used], place.reshape(-1, 3))
-        return MeshPart(geometry, None, None, GREY)
-    count = len(file.coordinates)
-    pairs, place = np.unique(triangles * count + file.uv_triangles[chosen], return_inverse=True)
-    geometry = MeshGeometry(file.vertices[pairs // count], place.reshape(-1, 3))
-    return MeshPart(geometry, file.coordinates[pairs % count], None, GREY)
 
 
 def _add_pictures(

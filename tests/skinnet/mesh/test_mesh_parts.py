@@ -12,7 +12,6 @@ from skinnet.mesh._mesh_parts import (
     MESH_SUFFIXES,
     MeshGeometry,
     concatenate,
-    read_parts,
 )
 
 
@@ -34,7 +33,7 @@ def test_parts_are_in_the_frame_of_the_scene(tmp_path: Path) -> None:
     move = trimesh.transformations.translation_matrix([5, 0, 0])
     scene.add_geometry(trimesh.creation.box(), transform=move)
     scene.export(tmp_path / "moved.glb")
-    (part,) = read_parts(tmp_path / "moved.glb")
+    (part,) = read_content(tmp_path / "moved.glb").parts
     assert np.allclose(part.geometry.vertices.mean(0), [5, 0, 0])
 
 
@@ -48,4 +47,4 @@ def test_concatenated_triangles_keep_their_vertices() -> None:
 def test_another_kind_of_file_is_refused_with_the_kinds_that_are_read(tmp_path: Path) -> None:
     (tmp_path / "scan.fbx").write_text("")
     with pytest.raises(InputError, match=", ".join(MESH_SUFFIXES)):
-        read_parts(tmp_path / "scan.fbx")
+        read_content(tmp_path / "scan.fbx")
