@@ -74,7 +74,8 @@ class SkinCLI(LightningCLI):
     @property
     def given(self) -> Namespace:
         """Return the arguments of the command."""
-        return self.config[self.config.subcommand]
+        given: Namespace = self.config[self.config.subcommand]
+        return given
 
     @property
     def writes(self) -> bool:

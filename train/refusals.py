@@ -174,15 +174,22 @@ def write_refusal(error: Exception, given: Mapping[str, Any], names: list[str]) 
         given: The flags of the user that are not at their defaults, and their values.
         names: The flags that are to blame. Without any, those that the message mentions.
     """
-    causes = list_causes(error)
-    # The parser lists every class that would be possible, and the reason comes in between.
-    by_parser = _is_in(_list_modules(error)[-1], ("jsonargparse",))
-    text = " ".join(str(causes[-1] if by_parser else error).split())
+    text = " ".join(_find_reason(error).split())
     names = names or _find_mentioned(text, given) or _find_mentioned(str(error), given)
     flags = " with ".join(f"--{name} {_write_value(given[name])}" for name in names)
     if not flags:
         return f"Lightning cannot train with this configuration: {_end(text)} ({HELP})"
     return f"Lightning refuses {flags}: {_end(text)} Give another value or leave it out ({HELP})."
+
+
+def _find_reason(error: Exception) -> str:
+    """What is wrong. The parser writes it among all types that it has tried."""
+    if not _is_in(_list_modules(error)[-1], ("jsonargparse",)):
+        return str(error)
+    lines = [line.strip() for line in str(error).splitlines()]
+    tried = ("- Expected a", "- Not a valid subclass", "- Problem with given class_path")
+    reasons = [line[2:] for line in lines if line.startswith("- ") and not line.startswith(tried)]
+    return reasons[0] if reasons else str(list_causes(error)[-1])
 
 
 def _end(text: str) -> str:
