@@ -1,5 +1,6 @@
 """Writes checkpoints that survive a kill, and pictures of readings."""
 
+import sys
 import time
 from pathlib import Path
 from typing import Any
@@ -7,7 +8,9 @@ from typing import Any
 import torch
 from jaxtyping import Float
 from lightning import Callback, LightningModule, Trainer
+from lightning.pytorch.callbacks import ModelCheckpoint
 from lightning.pytorch.loggers import TensorBoardLogger
+from lightning.pytorch.utilities import rank_zero_only
 from PIL import Image
 from torch import Tensor
 
@@ -52,6 +55,28 @@ class LastCheckpoint(Callback):
         if trainer.is_global_zero:
             beside.replace(self.path)
         self.saved = time.monotonic()
+
+
+def make_best_checkpoint(folder: str) -> ModelCheckpoint:
+    """Make the callback that writes `best.ckpt`, which has the lowest loss in validation."""
+    return ModelCheckpoint(
+        folder,
+        "best",
+        monitor="val/loss",
+        enable_version_counter=False,
+        save_on_train_epoch_end=False,
+    )
+
+
+@rank_zero_only
+def report_best(trainer: Trainer) -> None:
+    """Print that a training has left no `best.ckpt`, if so."""
+    best = trainer.checkpoint_callback
+    if isinstance(best, ModelCheckpoint) and not best.best_model_path:
+        print(
+            f"train: There was no validation, so that {best.dirpath} has no best.ckpt.",
+            file=sys.stderr,
+        )
 
 
 class PictureGrid(Callback):

@@ -4,28 +4,32 @@ import logging
 import sys
 import warnings
 from collections.abc import Sequence
-from pathlib import Path
 from typing import Any
 
+import torch
+from jsonargparse import Namespace
 from lightning import Callback, LightningDataModule, Trainer
-from lightning.fabric.utilities.exceptions import MisconfigurationException
 from lightning.pytorch.callbacks import (
     LearningRateMonitor,
-    ModelCheckpoint,
+    ProgressBar,
     RichProgressBar,
     TQDMProgressBar,
 )
 from lightning.pytorch.cli import LightningArgumentParser, LightningCLI
-from lightning.pytorch.loggers import TensorBoardLogger
+from lightning.pytorch.loggers import Logger
 
 from skinnet.errors import InputError
 from skinnet.network import read_checkpoint
 from skinnet.pipeline import SentenceParser
-from train.callbacks import LastCheckpoint, PictureGrid
+from train.callbacks import LastCheckpoint, PictureGrid, make_best_checkpoint, report_best
 from train.fitted import FittedFaces
+from train.flags import check_flags, check_trainer, describe_no_step
 from train.guards import FiniteGuard
-from train.logs import CurveLogger
+from train.logs import CurveLogger, EventLogger
+from train.monitors import check_monitors, list_logged
 from train.portraits import Portraits
+from train.refusals import explain_refusals, find_guilty, list_given, write_refusal
+from train.run_folder import RunFolder, check_run_folder
 from train.synthetic.faces import SyntheticFaces
 from train.task import SkinTask
 
@@ -67,45 +71,107 @@ class SkinCLI(LightningCLI):
         kept = ("fit", "validate", "test")
         return {name: LightningCLI.subcommands()[name] for name in kept}
 
+    @property
+    def given(self) -> Namespace:
+        """Return the arguments of the command."""
+        given: Namespace = self.config[self.config.subcommand]
+        return given
+
+    @property
+    def writes(self) -> bool:
+        """Return whether the command makes a run; evaluations and trials write nothing."""
+        return self.config.subcommand == "fit" and not self.given.trainer.fast_dev_run
+
     def _parse_ckpt_path(self) -> None:
         # Lightning would let the checkpoint's hyper-parameters override the configuration.
-        check_checkpoint(self.config.subcommand, self.config[self.config.subcommand].ckpt_path)
+        check_flags(self.config.subcommand, self.given)
+        check_checkpoint(self.config.subcommand, self.given.ckpt_path)
+        if self.writes:
+            check_run_folder(self.given.run, self.given.ckpt_path)
 
     def before_instantiate_classes(self) -> None:
         """Load checkpoints as data."""
         # With weights_only no code in a checkpoint is run.
-        self.config[self.subcommand].weights_only = True
+        self.given.weights_only = True
+
+    def instantiate_classes(self) -> None:
+        """Make the data, the model and the trainer."""
+        with explain_refusals(self._explain):
+            super().instantiate_classes()
 
     def instantiate_trainer(self, **kwargs: Any) -> Trainer:
         """Make a trainer with the loggers and callbacks of every run."""
-        config = self.config[self.subcommand]
-        run = config.run
-        loggers = [TensorBoardLogger(run, name="", version=""), CurveLogger(run)]
-        best = ModelCheckpoint(
-            run,
-            "best",
-            monitor="val/loss",
-            enable_version_counter=False,
-            save_on_train_epoch_end=False,
-        )
-        callbacks = [best, FiniteGuard(run), LastCheckpoint(run)]
-        callbacks += [PictureGrid(run), LearningRateMonitor()]
-        callbacks += _as_list(self.config_init[self.subcommand].trainer.callbacks)
-        if config.trainer.enable_progress_bar is not False:
+        wanted = self.config_init[self.subcommand].trainer
+        callbacks, loggers = self._make_own(wanted.logger is not False)
+        callbacks += _as_list(wanted.callbacks)
+        if wanted.enable_progress_bar is not False and not _has_progress_bar(callbacks):
             callbacks.append(_make_progress_bar())
-        trainer = super().instantiate_trainer(
-            logger=loggers, callbacks=callbacks, default_root_dir=run, **kwargs
-        )
-        # Only the first of several processes may rename; the trainer knows which one it is.
-        if self.subcommand == "fit" and config.ckpt_path is None and trainer.is_global_zero:
-            keep_previous(Path(run))
+        settings = {
+            **vars(wanted),
+            "logger": loggers + _as_list(wanted.logger),
+            "callbacks": callbacks,
+            "default_root_dir": self.given.run,
+            **kwargs,
+        }
+        with explain_refusals(lambda error: self._explain(error, settings)):
+            trainer = super().instantiate_trainer(**settings)
+        check_trainer(trainer, self.given.run)
+        if self.writes:
+            logged = list_logged(self.datamodule)
+            check_monitors(trainer, self.config_init[self.subcommand].lr_scheduler, logged)
         return trainer
 
+    def _make_own(self, with_loggers: bool) -> tuple[list[Callback], list[Logger]]:
+        """The callbacks and loggers of every run."""
+        run = self.given.run
+        # Lightning misses it in evaluation too, since checkpoints have its state.
+        best = make_best_checkpoint(run)
+        if self.subcommand != "fit":
+            return [best], []
+        config = self._parser("fit").dump(self.given, skip_none=False)
+        folder = RunFolder(run, config, self.given.ckpt_path, dry=not self.writes)
+        callbacks: list[Callback] = [folder, best, FiniteGuard(folder.find_last)]
+        loggers: list[Logger] = []
+        if with_loggers:
+            callbacks.append(LearningRateMonitor())
+            loggers = [EventLogger(run), CurveLogger(run)]
+        if self.writes:
+            callbacks += [LastCheckpoint(run), PictureGrid(run)]
+        return callbacks, loggers
 
-def _as_list(callbacks: Callback | list[Callback] | None) -> list[Callback]:
-    if callbacks is None:
+    def _explain(self, error: Exception, settings: dict[str, Any] | None = None) -> str:
+        given = list_given(self.given)
+        return write_refusal(error, given, find_guilty(given, settings) if settings else [])
+
+    def fit(self, **kwargs: Any) -> None:
+        """Train.
+
+        Raises:
+            InputError: If Lightning refuses the flags, or if no step is taken.
+        """
+        with explain_refusals(self._explain):
+            self.trainer.fit(**kwargs)
+        # Processes that were spawned give nothing back but their metrics.
+        if not self.trainer.callback_metrics:
+            raise InputError(describe_no_step(self.trainer, self.given.ckpt_path))
+        if self.writes:
+            report_best(self.trainer)
+
+    def validate(self, **kwargs: Any) -> None:
+        """Evaluate a checkpoint on the validation data."""
+        with explain_refusals(self._explain):
+            self.trainer.validate(**kwargs)
+
+    def test(self, **kwargs: Any) -> None:
+        """Evaluate a checkpoint on the test data."""
+        with explain_refusals(self._explain):
+            self.trainer.test(**kwargs)
+
+
+def _as_list(values: Any) -> list[Any]:
+    if values is None or isinstance(values, bool):
         return []
-    return callbacks if isinstance(callbacks, list) else [callbacks]
+    return list(values) if isinstance(values, list | tuple) else [values]
 
 
 def check_checkpoint(subcommand: str, path: str | None) -> None:
@@ -121,27 +187,8 @@ def check_checkpoint(subcommand: str, path: str | None) -> None:
         read_checkpoint(path)
 
 
-RUN_FILES = ("*.ckpt", "metrics.csv", "events.out.tfevents.*", "skipped.csv")
-"""Files that training writes into the folder of a run."""
-
-
-def keep_previous(run: Path) -> None:
-    """Rename the folder of an earlier run to the next free number, so that nothing is lost.
-
-    Raises:
-        InputError: For a folder whose files are not those of a run.
-    """
-    run = run.resolve()
-    if not run.is_dir() or not any(run.iterdir()):
-        return
-    if not any(next(run.glob(name), None) for name in RUN_FILES):
-        raise InputError(
-            f"{run} holds files that are not those of a run; give another folder with --run."
-        )
-    number = next(n for n in range(1, 10**6) if not run.with_name(f"{run.name}.{n}").exists())
-    kept = run.with_name(f"{run.name}.{number}")
-    run.rename(kept)
-    print(f"{run} holds an earlier run; it is kept as {kept}.", file=sys.stderr)
+def _has_progress_bar(callbacks: list[Callback]) -> bool:
+    return any(isinstance(each, ProgressBar) for each in callbacks)
 
 
 def _make_progress_bar() -> RichProgressBar | TQDMProgressBar:
@@ -157,6 +204,7 @@ _EXPECTED_WARNINGS = (
     r"`isinstance.treespec, LeafSpec.` is deprecated",
     "Precision bf16-mixed is not supported by the model summary",
     "Checkpoint directory .* exists and is not empty",  # the run folder, on purpose
+    "The dirpath has changed from",  # the run was renamed, or goes on in another folder
     "The number of training batches .* is smaller than the logging interval",
 )
 """Warnings of Lightning about intended settings."""
@@ -170,7 +218,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
     """Run a training command; return 0, or 2 with a sentence on stderr for bad input."""
     logging.getLogger("lightning.pytorch.utilities.rank_zero").addFilter(_is_no_advertisement)
     try:
-        with warnings.catch_warnings():
+        with warnings.catch_warnings(), explain_refusals(lambda e: write_refusal(e, {}, [])):
             for message in _EXPECTED_WARNINGS:
                 warnings.filterwarnings("ignore", message)
             SkinCLI(
@@ -179,11 +227,20 @@ def main(arguments: Sequence[str] | None = None) -> int:
                 subclass_mode_data=True,
                 seed_everything_default=0,
                 parser_class=_TrainParser,
-                save_config_kwargs={"overwrite": True},
+                save_config_callback=None,  # the folder of the run has it
                 args=list(arguments) if arguments is not None else None,
                 parser_kwargs={"prog": "python -m train"},
             )
-    except (InputError, MisconfigurationException, OSError) as error:
+    except torch.OutOfMemoryError as error:
+        print(f"train: {describe_full_memory(error)}", file=sys.stderr)
+        return 2
+    except (InputError, OSError) as error:
         print(f"train: {error}", file=sys.stderr)
         return 2
     return 0
+
+
+def describe_full_memory(error: Exception) -> str:
+    """Write what to do when a batch does not fit into memory."""
+    text = str(error).partition(". ")[0]
+    return f"{text}. Give a smaller --data.init_args.batch_size, or --trainer.precision bf16-mixed."

@@ -1,6 +1,6 @@
 """Stops a training whose losses or weights are not finite."""
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from pathlib import Path
 from typing import Any
 
@@ -20,11 +20,11 @@ class FiniteGuard(Callback):
     stop.
 
     Args:
-        folder: Folder of the run, which has the last good checkpoint.
+        find_last: Finds the last good checkpoint of the run; None if there is none yet.
     """
 
-    def __init__(self, folder: str) -> None:
-        self.last = Path(folder) / "last.ckpt"
+    def __init__(self, find_last: Callable[[], Path | None]) -> None:
+        self.find_last = find_last
 
     def on_before_backward(
         self, trainer: Trainer, pl_module: LightningModule, loss: Tensor
@@ -54,9 +54,9 @@ class FiniteGuard(Callback):
             raise InputError(self._explain(trainer, what, weights or broken))
 
     def _explain(self, trainer: Trainer, what: str, names: list[str]) -> str:
-        if self.last.is_file():
+        if (last := self.find_last()) is not None:
             remedy = (
-                f"Go on from the last good checkpoint with --ckpt_path {self.last} and "
+                f"Go on from the last good checkpoint with --ckpt_path {last} and "
                 "--trainer.gradient_clip_val 1 or --trainer.precision 32-true, or start again "
                 "with a lower --model.learning_rate."
             )

@@ -132,6 +132,7 @@ class Portraits(LightningDataModule):
         self.seed = seed
         self.synthetic = synthetic or SyntheticFaces(size=size, batch_size=batch_size)
         self.crops: dict[str, list[Crop]] = {}
+        self.skipped: list[Skipped] = []
 
     @property
     def description(self) -> str:
@@ -160,9 +161,7 @@ class Portraits(LightningDataModule):
                 f"{self.synthetic.size}; give --data.init_args.size and "
                 "--data.init_args.synthetic.size the same number."
             )
-        crops, skipped = find_crops(self.folder, self.size, self.unreadable_share)
-        if self.trainer is not None and self.trainer.is_global_zero:
-            write_skipped(skipped, Path(self.trainer.default_root_dir) / "skipped.csv")
+        crops, self.skipped = find_crops(self.folder, self.size, self.unreadable_share)
         order = np.random.default_rng(self.seed).permutation(len(crops))
         kept = max(1, round(self.val_share * len(crops)))
         if len(crops) <= kept:

@@ -18,6 +18,7 @@ from skinnet.network import AutoencoderConfig, Reading, SkinAutoencoder, SkinMap
 from skinnet.physics import Capture
 from train.batch import Batch
 from train.metrics import ReadingMetrics
+from train.refusals import count_steps
 
 Batches = Batch | dict[str, Batch]
 """One kind of data, or several that each step sees together."""
@@ -194,7 +195,7 @@ class SkinTask(LightningModule):
         optimizer: Optimizer = AdamW(
             self.parameters(), lr=self.learning_rate, weight_decay=self.weight_decay
         )
-        steps = max(int(self.trainer.estimated_stepping_batches), 1)
+        steps = max(count_steps(self.trainer), 1)
         schedule = LambdaLR(
             optimizer, lambda step: warm_up_and_anneal(step, self.warmup_steps, steps)
         )

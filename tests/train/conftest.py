@@ -6,6 +6,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 from pipeline_scans import SIZE, pigments
+from small_runs import list_arguments
 from torch.utils.data import default_collate
 
 from skinnet.appearance.colour import SkinColour
@@ -18,24 +19,6 @@ from train.cli import main
 from train.synthetic.faces import SyntheticFaces, SyntheticScenes
 
 Fit = Callable[..., int]
-
-SMALL = (
-    "--model.widths=[4,8]",
-    "--data.init_args.size=16",
-    "--data.init_args.batch_size=4",
-    "--data.init_args.train_samples=16",
-    "--data.init_args.val_samples=4",
-    "--data.init_args.test_samples=4",
-    "--data.init_args.heads=2",
-    "--data.init_args.val_heads=1",
-    "--data.init_args.test_heads=1",
-    "--trainer.precision=32-true",
-    "--trainer.accelerator=cpu",
-    "--trainer.enable_progress_bar=false",
-    "--trainer.enable_model_summary=false",
-    "--trainer.log_every_n_steps=1",
-    "--model.warmup_steps=2",
-)
 
 
 @pytest.fixture(scope="session")
@@ -69,10 +52,7 @@ def batch(casts: Path) -> Callable[[int], Batch]:
 @pytest.fixture
 def fit_arguments(casts: Path) -> Callable[..., list[str]]:
     """The arguments of a small run of `configs/quick.yaml` in a folder."""
-    kept = f"--data.init_args.geometry={casts}"
-    return lambda folder, *arguments: [
-        *("fit", "--config=configs/quick.yaml", f"--run={folder}", *SMALL, kept, *arguments)
-    ]
+    return lambda folder, *arguments: list_arguments(folder, casts, *arguments)
 
 
 @pytest.fixture
