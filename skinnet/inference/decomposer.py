@@ -21,6 +21,7 @@ from skinnet.images.resizing import resize
 from skinnet.images.srgb import srgb_to_linear
 from skinnet.inference._editing import ColourChange, apply_change, compute_change, fade_edges
 from skinnet.inference._onnx_pair import refuse_other_export
+from skinnet.inference._transparency import note_transparency
 from skinnet.inference.decomposition import Decomposition
 from skinnet.inference.full_resolution._colour_table import tabulate_colours
 from skinnet.inference.full_resolution._layers import Layers, enlarge_layers, sharpen_layers
@@ -124,13 +125,15 @@ class Decomposer:
         box = _choose_box(photo, whole_image, name or _name_image(image))
         encoder_outputs = self._encode(photo[box.slices])
         layers = self._make_layers(photo[box.slices], encoder_outputs, detail)
+        alpha = None if picture.alpha is None else picture.alpha[box.slices]
+        notes = note_transparency(alpha, layers.mask, name or _name_image(image))
         return Decomposition(
             **_paste_layers(layers, photo, box),
             light=self._name_light(encoder_outputs),
             camera=_name_camera(encoder_outputs),
             box=box,
             colour_space=picture.colour_space,
-            notes=(*picture.notes, *([_WHOLE_IMAGE] if whole_image else [])),
+            notes=(*picture.notes, *notes, *([_WHOLE_IMAGE] if whole_image else [])),
             output_info=self.encoder.output_info,
             model={
                 "version": self.encoder.version,
@@ -225,7 +228,9 @@ class Decomposer:
         alpha = None if colour.alpha is None else colour.alpha[box.slices]
         crop = replace(colour, pixels=pixels[box.slices], alpha=alpha)
         apply_change(crop, change, encoder_outputs["specular"][0], mask)
-        return replace(colour, pixels=pixels)
+        skin = resize(encoder_outputs["mask"][0], box.width, box.height)
+        notes = note_transparency(alpha, skin, name or picture.name)
+        return replace(colour, pixels=pixels, notes=(*colour.notes, *notes))
 
     def _encode(self, crop: NDArray[np.uint8]) -> dict[str, NDArray[np.float32]]:
         """Maps [1, h, w] and capture [1, ...] of a crop at the encoder's working size."""

@@ -17,6 +17,9 @@ _SHORT = 0.5
 _NOISE = 0.01
 """Share of the sum of the bands that negative bands may have; dark noise is below."""
 
+_WIDEST_GAP = 40.0
+"""Nanometres between two rows that are interpolated; what lies in a wider gap is not known."""
+
 _GLITCH = 0.05
 """Share of the largest value beyond which a negative value is no noise."""
 
@@ -85,7 +88,9 @@ def _average(
     # Only the shape counts, and the sum of the largest floats would be infinite.
     values = values / np.abs(values).max(0).clip(np.finfo(float).tiny)
     bands = average_over_bands(wavelength[order], values[order], WAVELENGTHS.numpy())
-    return _clip_noise(path, bands, values), [names[i] for i in others if names]
+    clipped = _clip_noise(path, bands, values)
+    _check_gaps(path, wavelength[order])
+    return clipped, [names[i] for i in others if names]
 
 
 def _check_headings(path: Path, wavelength: str, values: list[str]) -> None:
@@ -148,6 +153,18 @@ def _check_wavelengths(path: Path, wavelength: Float[np.ndarray, "rows"]) -> sli
             "spectrum, in order."
         )
     return slice(None, None, 1 if steps[0] > 0 else -1)
+
+
+def _check_gaps(path: Path, wavelength: Float[np.ndarray, "rows"]) -> None:
+    """Refuse tables with a gap that a line or a band may hide in; `wavelength` ascends."""
+    low, high = float(WAVELENGTHS[0]), float(WAVELENGTHS[-1])
+    wide = (np.diff(wavelength) > _WIDEST_GAP) & (wavelength[1:] > low) & (wavelength[:-1] < high)
+    if wide.any():
+        at = int(wide.argmax())
+        raise InputError(
+            f"{path} has no row between {wavelength[at]:g} and {wavelength[at + 1]:g} nm; rows at "
+            f"most {_WIDEST_GAP:g} nm apart are needed. Complete the table."
+        )
 
 
 def _clip_noise(

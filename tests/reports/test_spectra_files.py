@@ -350,3 +350,12 @@ def test_the_command_reports_a_bad_file(tmp_path: Path, capsys: pytest.CaptureFi
     assert main(["maps", str(tmp_path / "a.obj"), "--colour.light", light]) == 2
     said = capsys.readouterr().err
     assert "bad.csv needs 2 columns" in said and "Traceback" not in said
+
+
+@pytest.mark.parametrize("gap", [(450, 550), (500, 690), (380, 480)])
+def test_a_table_with_a_wide_gap_is_refused(tmp_path: Path, gap: tuple[int, int]) -> None:
+    rows = [nm for nm in range(380, 781, 5) if not gap[0] < nm < gap[1]]
+    path = tmp_path / "a.csv"
+    path.write_text("".join(f"{nm},1.0\n" for nm in rows))
+    with pytest.raises(InputError, match=rf"no row between {gap[0]} and {gap[1]} nm; .*Complete"):
+        load_light(str(path))
