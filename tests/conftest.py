@@ -15,6 +15,7 @@ install_import_hook("skinnet", "beartype.beartype")
 
 import torch  # noqa: E402
 
+from skinnet.cli import main  # noqa: E402
 from skinnet.physics import CAMERA_COMPONENTS, LIGHTS, Capture  # noqa: E402
 
 settings.register_profile(
@@ -31,6 +32,20 @@ def shared_data() -> Path:
     if not SHARED.is_dir():
         pytest.skip("There is no folder ../shared/data beside the repository.")
     return SHARED
+
+
+@pytest.fixture
+def refused(capsys: pytest.CaptureFixture[str]) -> Callable[..., str]:
+    """Runs a command that is refused with exit code 2; the sentences on standard error."""
+
+    def run(*arguments: object) -> str:
+        capsys.readouterr()
+        assert main([str(argument) for argument in arguments]) == 2
+        said = capsys.readouterr().err
+        assert "Traceback" not in said
+        return said
+
+    return run
 
 
 @pytest.fixture(scope="session")

@@ -37,9 +37,6 @@ from train.synthetic.scene import SceneParameters
 
 Share = restricted_number_type("Share", float, [(">=", 0), ("<", 1)])
 
-_NO_COLOUR = "It has no colour"
-"""Begin of the reason for which grey and toned pictures are skipped."""
-
 EXPOSURE_SD, WHITE_BALANCE_SD = 0.4, 0.03
 """Standard deviations of the augmentation, in logarithms: of all channels, and of R/G and B/G."""
 
@@ -211,6 +208,7 @@ class Skipped(NamedTuple):
     path: Path
     reason: str
     readable: bool
+    colourless: bool = False
 
 
 def find_crops(
@@ -244,7 +242,7 @@ def find_crops(
         raise InputError(
             f"{folder} holds no photograph with a face in it ({len(pictures)} pictures searched)."
         )
-    colourless = sum(each.reason.startswith(_NO_COLOUR) for each in skipped)
+    colourless = sum(each.colourless for each in skipped)
     _report(folder, len(crops), unreadable, len(skipped) - len(unreadable), colourless, walked)
     return crops, skipped + [
         Skipped(Path(path), f"It is {kind.one}; {kind.remedy}.", readable=True)
@@ -322,7 +320,7 @@ def _crop_face(found: Found, size: int) -> Crop | Skipped:
     box = frame_head(face, photo.shape[1], photo.shape[0])
     tone = find_tone(photo, box, face)
     if tone is not None:
-        return Skipped(path, f"{_NO_COLOUR}: {tone}.", readable=True)
+        return Skipped(path, f"It has no colour: {tone}.", readable=True, colourless=True)
     mask = segment_skin(photo, face)[box.slices]
     scale = size / max(box.width, box.height)
     width, height = max(1, round(box.width * scale)), max(1, round(box.height * scale))

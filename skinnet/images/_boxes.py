@@ -1,4 +1,4 @@
-"""Boxes of JPEG 2000 files."""
+"""Boxes of JPEG 2000, HEIF and AVIF files."""
 
 import struct
 from collections.abc import Iterator
@@ -13,7 +13,7 @@ Box = tuple[bytes, bytes]
 
 
 def list_boxes(data: bytes) -> Iterator[Box]:
-    """List the boxes of a JP2 file, or those in the content of a box."""
+    """List the boxes of a file, or those in the content of a box."""
     at = 0
     while at + 8 <= len(data):
         size, name = struct.unpack_from(">I4s", data, at)

@@ -12,11 +12,13 @@ _XMP_KEY = b"XML:com.adobe.xmp"
 _MAX_TEXT = 1 << 24
 
 
-def list_chunks(data: bytes) -> Iterator[Chunk]:
-    """List all chunks of a PNG file but those of its pixels, also those after them."""
+def list_chunks(data: bytes, ahead: bool = False) -> Iterator[Chunk]:
+    """List all chunks of a PNG file but those of its pixels; `ahead` lists those before them."""
     at = len(SIGNATURE)
     while data.startswith(SIGNATURE) and at + 8 <= len(data):
         length, name = struct.unpack_from(">I4s", data, at)
+        if ahead and name in (b"IDAT", b"IEND"):
+            return
         if name not in (b"IDAT", b"fdAT", b"IEND"):
             yield name, data[at + 8 : at + 8 + length]
         at += 12 + length

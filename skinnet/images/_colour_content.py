@@ -14,6 +14,7 @@ from numpy.typing import NDArray
 from skinnet.errors import InputError
 from skinnet.images.box import Box
 from skinnet.images.faces import find_face, frame_head
+from skinnet.images.skin_segmentation import SKIN_AREAS
 from skinnet.images.srgb import srgb_to_linear
 
 _PIXELS, _CELLS, _KNOTS = 128, 12, 7
@@ -23,14 +24,6 @@ _LUMA_CHROMA = np.array(
     [[0.299, -0.168736, 0.5], [0.587, -0.331264, -0.418688], [0.114, 0.5, -0.081312]], np.float32
 )
 """Y, Cb and Cr of R, G and B (JFIF)."""
-
-_SKIN_AREAS = (
-    (0.18, 0.5, 0.38, 0.7),
-    (0.62, 0.5, 0.82, 0.7),
-    (0.42, 0.4, 0.58, 0.62),
-    (0.35, 0.1, 0.65, 0.22),
-)
-"""Cheeks, nose and forehead: left, top, right and bottom in sides of the face's box."""
 
 _FACE_MARGIN = 1.25
 """Side of the region of the face alone, in sides of its box: a wall behind it may be coloured."""
@@ -252,7 +245,7 @@ def _curve_table() -> NDArray[np.float32]:
 def _find_skin(photo: NDArray[np.uint8], face: Box) -> NDArray[np.float32]:
     """Colour of the area that is most like skin: cloth or hair may cover the others."""
     step = max(1, face.width // 100)
-    areas = [photo[_place_area(face, area).slices][::step, ::step] for area in _SKIN_AREAS]
+    areas = [photo[_place_area(face, area).slices][::step, ::step] for area in SKIN_AREAS]
     means = [srgb_to_linear(area).mean((0, 1)) for area in areas if area.size]
     ratios = _log_ratios(np.array(means))
     skin: NDArray[np.float32] = ratios[_measure_distance(ratios).argmin()]

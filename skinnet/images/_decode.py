@@ -21,11 +21,6 @@ MAX_PIXELS = 100_000_000
 PHOTO_FORMATS = ("JPEG", "PNG", "TIFF", "WEBP", "AVIF", "JPEG2000", "BMP", "GIF", "PPM", "MPO")
 """Formats that Pillow reads; its others hold no photographs or start other programs."""
 
-PHOTO_SUFFIXES = frozenset(
-    ".jpg .jpeg .png .tif .tiff .webp .avif .jp2 .bmp .gif .ppm .pgm .pnm .mpo".split()
-)
-"""Suffixes of the files that are taken as photographs in a folder."""
-
 _DAMAGES = (Image.DecompressionBombError, *READ_ERRORS)
 _SUBFILE_TYPE, _PHOTOMETRIC, _DNG_VERSION = 254, 262, 50706
 _RAW_PHOTOMETRICS = (32803, 34892)
@@ -70,7 +65,7 @@ def check_size(width: int, height: int, name: str) -> None:
 
 def _decode(image: Image.Image, name: str, data: bytes, upright: bool) -> Picture:
     if image.format == "TIFF":
-        _refuse_raw(image, data, name)
+        _refuse_raw(image, name)
     pixels = read_pixels(image, data, name, upright)
     space, notes = decide_colour_space(image, data, pixels.channels, name)
     picture = Picture(
@@ -86,12 +81,12 @@ def _decode(image: Image.Image, name: str, data: bytes, upright: bool) -> Pictur
     return picture
 
 
-def _refuse_raw(image: Image.Image, data: bytes, name: str) -> None:
-    """Refuse files of cameras that are TIFF inside; Pillow would show their preview or mosaic."""
+def _refuse_raw(image: Image.Image, name: str) -> None:
+    """Refuse previews and mosaics, also of an image from memory, whose file is not known."""
     tags: Any = image.tag_v2  # type: ignore[attr-defined]
     mosaic = tags.get(_PHOTOMETRIC) in _RAW_PHOTOMETRICS or _DNG_VERSION in tags
     reduced = int(tags.get(_SUBFILE_TYPE, 0)) & 1
-    if mosaic or reduced or data[8:10] == b"CR":
+    if mosaic or reduced:
         raise InputError(
             f"{name} is a RAW file, or one that begins with a preview; develop it to JPEG, PNG or "
             "TIFF in sRGB first."

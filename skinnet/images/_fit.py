@@ -3,9 +3,9 @@
 from dataclasses import replace
 
 import numpy as np
-from PIL import Image
 
 from skinnet.images._icc import convert_pixels, make_srgb_profile
+from skinnet.images._plain import guess_rgb, to_eight_bits
 from skinnet.images.colour_space import ColourSpace
 from skinnet.images.picture import Picture
 
@@ -18,7 +18,7 @@ def convert_to_srgb(picture: Picture) -> Picture:
     if profile is not None:
         pixels = convert_pixels(picture.pixels, profile, make_srgb_profile(), picture.pixels.dtype)
     elif picture.pixels.shape[2] == 4:
-        pixels = np.array(Image.fromarray(reduce_depth(picture).pixels, "CMYK").convert("RGB"))
+        pixels = guess_rgb(picture.pixels)
     else:
         return picture
     return replace(picture, pixels=pixels, colour_space=ColourSpace("sRGB", "assumed"))
@@ -42,9 +42,5 @@ def reduce_depth(picture: Picture) -> Picture:
     """Round 16 bits to 8."""
     if picture.pixels.dtype == np.uint8:
         return picture
-    pixels, alpha = (
-        None if values is None else ((values.astype(np.uint32) + 128) // 257).astype(np.uint8)
-        for values in (picture.pixels, picture.alpha)
-    )
-    assert pixels is not None
-    return replace(picture, pixels=pixels, alpha=alpha)
+    alpha = None if picture.alpha is None else to_eight_bits(picture.alpha)
+    return replace(picture, pixels=to_eight_bits(picture.pixels), alpha=alpha)

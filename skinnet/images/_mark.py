@@ -16,6 +16,7 @@ from PIL import Image, PngImagePlugin
 
 from skinnet._version import __version__
 from skinnet.files import READ_ERRORS
+from skinnet.images._chunks import SIGNATURE
 from skinnet.images._decode import PHOTO_FORMATS
 from skinnet.images._kind import is_heif
 
@@ -35,7 +36,6 @@ _SCAN_PICTURES = {
 }
 """Pictures of scans by the end of their names, and the archives that lie beside them."""
 
-_PNG = b"\x89PNG\r\n\x1a\n"
 _TAIL, _LONGEST_TEXT, _LARGEST_SUMMARY = 256, 4096, 1_000_000
 _Source = str | Path | BinaryIO | BufferedIOBase
 
@@ -129,7 +129,7 @@ def _read_and_rewind(file: BinaryIO | BufferedIOBase) -> Mark | None:
 
 def _read_open(file: BinaryIO | BufferedIOBase) -> Mark | None:
     file.seek(0)
-    if file.read(8) == _PNG:
+    if file.read(8) == SIGNATURE:
         return _read_png(file)
     return _read_exif(file) or _read_tail(file)
 
@@ -168,7 +168,7 @@ def _decompress(data: bytes) -> bytes:
 
 def _list_chunks(file: BinaryIO | BufferedIOBase) -> Iterator[tuple[bytes, bytes]]:
     """The text and EXIF chunks of a PNG file, which may stand on both sides of its pixels."""
-    file.seek(len(_PNG))
+    file.seek(len(SIGNATURE))
     while len(head := file.read(8)) == 8 and head[4:] != b"IEND":
         length, name = struct.unpack(">I4s", head)
         if name in (b"tEXt", b"zTXt", b"iTXt", b"eXIf"):

@@ -10,6 +10,9 @@ from typing import Any
 
 from skinnet.errors import InputError
 
+OUTPUT = "skinmaps"
+"""Folder beside a photograph or a scan for its results."""
+
 Belongs = Callable[[Path], bool]
 """Whether an existing file is a result of the same input, so that it may be replaced."""
 

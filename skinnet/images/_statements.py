@@ -7,9 +7,10 @@ from typing import Any, NamedTuple
 from PIL import Image
 
 from skinnet.files import READ_ERRORS
+from skinnet.images._boxes import list_boxes
+from skinnet.images._chunks import list_chunks
 from skinnet.images._icc import Primaries
 
-_PNG_START = b"\x89PNG\r\n\x1a\n"
 _BOXES = {b"jp2h", b"meta", b"iprp", b"ipco"}
 """Boxes on the way to a colr box in HEIF, AVIF and JPEG 2000 files."""
 
@@ -50,7 +51,7 @@ class BmpColour(NamedTuple):
 
 def read_cicp(data: bytes) -> tuple[int, int, int] | None:
     """Primaries, transfer and full range of a PNG's cICP chunk."""
-    for name, body in _list_chunks(data):
+    for name, body in list_chunks(data, ahead=True):
         if name == b"cICP" and len(body) == 4:
             return body[0], body[1], body[3]
     return None
@@ -59,7 +60,7 @@ def read_cicp(data: bytes) -> tuple[int, int, int] | None:
 def read_colr(data: bytes) -> ColrBox:
     """The colr boxes of a HEIF, AVIF or JPEG 2000 file."""
     profile, code_points, enumerated = None, None, None
-    for body in map(bytes, _find_colr(memoryview(data))):
+    for body in _find_colr(data):
         kind = body[:4]
         if kind in (b"prof", b"rICC"):
             profile = profile or body[4:]
@@ -134,33 +135,13 @@ def _from_xyz(ends: list[float]) -> Primaries | None:
     return read_primaries((wx, wy), [value for pair in corners for value in pair])
 
 
-def _list_chunks(data: bytes) -> Iterator[tuple[bytes, bytes]]:
-    """Chunks of a PNG file before its pixels."""
-    at = len(_PNG_START)
-    while data.startswith(_PNG_START) and at + 8 <= len(data):
-        length, name = struct.unpack_from(">I4s", data, at)
-        if name in (b"IDAT", b"IEND"):
-            return
-        yield name, data[at + 8 : at + 8 + length]
-        at += 12 + length
-
-
-def _find_colr(view: memoryview) -> Iterator[memoryview]:
-    """Bodies of the colr boxes of a file or of a box."""
-    at = 0
-    while at + 8 <= len(view):
-        size, name = struct.unpack_from(">I4s", view, at)
-        head = 8
-        if size == 1 and at + 16 <= len(view):
-            size, head = struct.unpack_from(">Q", view, at + 8)[0], 16
-        end = len(view) if size == 0 else at + size
-        if end < at + head:
-            return
+def _find_colr(data: bytes) -> Iterator[bytes]:
+    """Contents of the colr boxes of a file or of a box."""
+    for name, body in list_boxes(data):
         if name == b"colr":
-            yield view[at + head : end]
+            yield body
         elif name in _BOXES:
-            yield from _find_colr(view[at + head + (4 if name == b"meta" else 0) : end])
-        at = end
+            yield from _find_colr(body[4:] if name == b"meta" else body)
 
 
 def _read_index(exif: Image.Exif, inner: dict[int, Any]) -> str | None:

@@ -16,6 +16,7 @@ from skinnet.images._icc import (
     make_srgb_profile,
     read_signature,
 )
+from skinnet.images._plain import guess_rgb, to_eight_bits
 from skinnet.images.colour_space import ColourSpace
 from skinnet.images.srgb import srgb_to_linear
 
@@ -59,7 +60,7 @@ class Picture:
             return rgb
         image = Image.fromarray(rgb)
         white = Image.new("RGB", image.size, (255, 255, 255))
-        white.paste(image, mask=Image.fromarray(_to_eight_bits(self.alpha)))
+        white.paste(image, mask=Image.fromarray(to_eight_bits(self.alpha)))
         return np.array(white)
 
     def linear(self) -> NDArray[np.float32]:
@@ -116,7 +117,7 @@ class Picture:
         pixels, profile = self._expand()
         if profile is not None:
             return convert_pixels(pixels, profile, make_srgb_profile(), np.uint8)
-        return _to_eight_bits(pixels)
+        return to_eight_bits(pixels)
 
     def _expand(self) -> tuple[NDArray[Any], bytes | None]:
         """RGB or CMYK pixels, and their profile; others are converted to sRGB."""
@@ -126,11 +127,5 @@ class Picture:
         if pixels.ndim == 2:
             pixels = np.repeat(pixels[..., None], 3, 2)
         if pixels.shape[2] == 4 and profile is None:
-            return np.array(Image.fromarray(_to_eight_bits(pixels), "CMYK").convert("RGB")), None
+            return guess_rgb(pixels), None
         return pixels, profile
-
-
-def _to_eight_bits(values: NDArray[Any]) -> NDArray[np.uint8]:
-    if values.dtype == np.uint8:
-        return values
-    return ((values.astype(np.uint32) + 128) // 257).astype(np.uint8)

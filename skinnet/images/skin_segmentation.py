@@ -17,13 +17,14 @@ _FACE_SIZE = 96
 _Rectangle = tuple[float, float, float, float]
 """Left, top, right, bottom, in pixels or in sides of the face's box."""
 
-_SEEDS: tuple[_Rectangle, ...] = (
+SKIN_AREAS: tuple[_Rectangle, ...] = (
     (0.18, 0.50, 0.38, 0.70),
     (0.62, 0.50, 0.82, 0.70),
     (0.42, 0.40, 0.58, 0.62),
     (0.35, 0.10, 0.65, 0.22),
 )
-"""Both cheeks, the nose, and the forehead; where hair hides it, its pixels are outliers."""
+"""Both cheeks, the nose, and the forehead, in sides of the face's box; where hair hides it, its
+pixels are outliers."""
 
 _MIN_COVARIANCE = np.diag([0.06, 0.07, 0.32]) ** 2
 """Least covariance of log R/G, log B/G and log luminance: shading and noise of even skin."""
@@ -72,7 +73,7 @@ def _segment(crop: NDArray[np.uint8], face: _Rectangle) -> NDArray[np.float32]:
     linear = srgb_to_linear(crop) + 1e-3
     linear = ndimage.gaussian_filter(linear, (1, 1, 0))
     x, y = _face_coordinates(crop.shape[:2], face)
-    seeds = np.any([_select(x, y, seed) for seed in _SEEDS], 0)
+    seeds = np.any([_select(x, y, seed) for seed in SKIN_AREAS], 0)
     if not seeds.any():
         return np.zeros(crop.shape[:2], np.float32)
     mean, covariance = _fit_normal(_features(linear)[seeds])

@@ -7,10 +7,7 @@ from typing import Any, NamedTuple
 
 from skinnet.errors import InputError
 from skinnet.images._mark import EDITED, read_mark, read_summary
-from skinnet.images._result_names import choose_stem, describe_input, is_input
-
-OUTPUT = "skinmaps"
-"""Folder beside a photograph for its results."""
+from skinnet.images._result_names import OUTPUT, choose_stem, describe_input, is_input
 
 
 class Source(NamedTuple):

@@ -12,18 +12,13 @@ from typing import Any
 
 from skinnet.errors import InputError, NoFaceError
 from skinnet.images._mark import EDITED, Mark, read_mark
-from skinnet.images._result_names import compute_digest, lock_folder
+from skinnet.images._result_names import OUTPUT, compute_digest, lock_folder
 from skinnet.images._walk import STDIN, Found, Walk, check_mark, find_one, walk
 from skinnet.images._write import choose_suffix, find_format, write_picture
 from skinnet.images.photograph import read_picture
 from skinnet.images.picture import Picture
 from skinnet.inference._messages import note, print_line, report
-from skinnet.inference._own_results import (
-    OUTPUT,
-    Source,
-    choose_edit_target,
-    choose_result_stem,
-)
+from skinnet.inference._own_results import Source, choose_edit_target, choose_result_stem
 from skinnet.inference.decomposer import Decomposer
 from skinnet.inference.decomposition import Decomposition
 from skinnet.inference.results import _list_ends, _make_folder, write_results

@@ -20,11 +20,6 @@ _TARGA = b"TRUEVISION-XFILE"
 """The end of a Targa file; older ones are known by their names alone."""
 
 
-def read_texture(path: Path) -> Texture:
-    """Read a picture as uint8 sRGB: `open_texture`, with transparency composited on white."""
-    return open_texture(path).srgb
-
-
 def open_texture(path: Path) -> Picture:
     """Open a picture, its rows and columns as stored in the file.
 

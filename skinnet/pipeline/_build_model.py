@@ -15,6 +15,7 @@ from skinnet.appearance.linear import LinearModel
 from skinnet.appearance.measures import Measures, measure
 from skinnet.appearance.stack import SubjectStack
 from skinnet.errors import InputError
+from skinnet.images._result_names import OUTPUT
 from skinnet.pipeline._model_inputs import find_maps, read_mask, read_shape, stack_subjects
 from skinnet.pipeline._model_results import (
     JOINT,
@@ -25,7 +26,7 @@ from skinnet.pipeline._model_results import (
 )
 from skinnet.pipeline._output import add_output, make_output_folder
 from skinnet.pipeline._progress import log
-from skinnet.pipeline._scans import OUTPUT, ScanOptions
+from skinnet.pipeline._scans import ScanOptions
 from skinnet.pipeline._source import Source, choose_folder
 
 MODEL_FOLDER = Path("skinmodel")

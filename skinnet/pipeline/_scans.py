@@ -11,7 +11,7 @@ from jaxtyping import Float
 from jsonargparse import ArgumentParser, Namespace
 
 from skinnet.errors import InputError
-from skinnet.images._result_names import choose_stem
+from skinnet.images._result_names import OUTPUT, choose_stem
 from skinnet.mesh.mesh import Mesh
 from skinnet.mesh.mesh_file import read_mesh
 from skinnet.mesh.repair import repair_mesh
@@ -24,9 +24,6 @@ from skinnet.shape.model_formats import load_shape_model
 
 _LANDMARK_ENDS = (".ljson", ".pp", "_landmarks.csv", "_landmarks.json")
 """Ends of the names of landmark files beside NAME.obj."""
-
-OUTPUT = "skinmaps"
-"""Folder beside a scan for the files of its fit and its maps."""
 
 
 @dataclass(frozen=True)

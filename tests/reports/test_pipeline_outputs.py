@@ -53,20 +53,6 @@ def people(made: Path, tmp_path: Path) -> Path:
     return tmp_path / "people"
 
 
-@pytest.fixture
-def refused(capsys: pytest.CaptureFixture[str]) -> Callable[..., str]:
-    """Runs a command that is refused with exit code 2; the sentences on standard error."""
-
-    def run(*arguments: object) -> str:
-        capsys.readouterr()
-        assert main([str(argument) for argument in arguments]) == 2
-        said = capsys.readouterr().err
-        assert "Traceback" not in said
-        return said
-
-    return run
-
-
 def make_maps(folder: Path, name: str, output: Path) -> list[str]:
     return ["maps", str(folder / name / "a.obj"), *FAST, WARP, "-o", str(output)]
 

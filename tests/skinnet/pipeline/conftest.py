@@ -1,6 +1,6 @@
 """Three textured scans, and what the commands make of them."""
 
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
 from pathlib import Path
 
 import pytest
@@ -41,17 +41,3 @@ def model(maps: Path) -> Path:
     folder = maps.parent / "skinmodel"
     assert main(["build-model", str(maps), "-o", str(folder), "--model.samples=5"]) == 0
     return folder
-
-
-@pytest.fixture
-def refused(capsys: pytest.CaptureFixture[str]) -> Callable[..., str]:
-    """Runs a command that is refused with exit code 2; the sentences on standard error."""
-
-    def run(*arguments: object) -> str:
-        capsys.readouterr()
-        assert main([str(argument) for argument in arguments]) == 2
-        said = capsys.readouterr().err
-        assert "Traceback" not in said
-        return said
-
-    return run
