@@ -24,6 +24,19 @@ def list_chunks(data: bytes, ahead: bool = False) -> Iterator[Chunk]:
         at += 12 + length
 
 
+def has_sound_pixels(data: bytes) -> bool:
+    """Whether the chunks of a PNG file's pixels have the checksums that they state."""
+    view, at = memoryview(data), len(SIGNATURE)
+    while at + 12 <= len(data):
+        length, name = struct.unpack_from(">I4s", data, at)
+        end = at + 8 + length
+        if name == b"IDAT" and end + 4 <= len(data):
+            if zlib.crc32(view[at + 4 : end]) != struct.unpack_from(">I", data, end)[0]:
+                return False
+        at = end + 4
+    return True
+
+
 def insert_chunks(data: bytes, chunks: Iterable[Chunk]) -> bytes:
     """Insert chunks after the header of a PNG file, which has no others before its pixels."""
     head = len(SIGNATURE) + 25

@@ -8,6 +8,7 @@ from PIL import Image
 
 from skinnet.errors import InputError
 from skinnet.files import READ_ERRORS
+from skinnet.images._chunks import has_sound_pixels
 from skinnet.images._colour_decision import decide_colour_space
 from skinnet.images._frames import describe_frames
 from skinnet.images._kind import HEIF, OTHER, PICTURE, identify
@@ -20,6 +21,11 @@ MAX_PIXELS = 100_000_000
 
 PHOTO_FORMATS = ("JPEG", "PNG", "TIFF", "WEBP", "AVIF", "JPEG2000", "BMP", "GIF", "PPM", "MPO")
 """Formats that Pillow reads; its others hold no photographs or start other programs."""
+
+_PALETTE = (
+    "{} has a palette of at most 256 colours, in which the fine differences of skin are lost; give "
+    "the photograph that it was made from."
+)
 
 _DAMAGES = (Image.DecompressionBombError, *READ_ERRORS)
 _SUBFILE_TYPE, _PHOTOMETRIC, _DNG_VERSION = 254, 262, 50706
@@ -66,6 +72,10 @@ def check_size(width: int, height: int, name: str) -> None:
 def _decode(image: Image.Image, name: str, data: bytes, upright: bool) -> Picture:
     if image.format == "TIFF":
         _refuse_raw(image, name)
+    if image.format == "PNG" and data and not has_sound_pixels(data):
+        # Pillow does not compare them, and shows other pixels from the fault on.
+        raise ValueError("its pixels do not have the checksum that it states")
+    has_palette = image.mode in ("P", "PA")
     pixels = read_pixels(image, data, name, upright)
     space, notes = decide_colour_space(image, data, pixels.channels, name)
     picture = Picture(
@@ -75,7 +85,7 @@ def _decode(image: Image.Image, name: str, data: bytes, upright: bool) -> Pictur
         space,
         image.format or "",
         keep_metadata(image, data),
-        (*notes, *describe_frames(image, data, name)),
+        (*notes, *describe_frames(image, data, name), *([_PALETTE.format(name)] * has_palette)),
     )
     _ = picture.srgb  # damage that the profile shows is damage of the file
     return picture
