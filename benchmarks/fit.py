@@ -27,10 +27,10 @@ from benchmarks.report import Results, main
 from benchmarks.resources import time_least
 from skinnet.mesh import Mesh
 from skinnet.shape._moments import compute_moments
+from skinnet.shape._procedural_head import IDENTITY_SIZE, compute_chart_angles, compute_head_radius
 from skinnet.shape._scan_points import ScanPoints
 from skinnet.shape._separable import SeparableObjective
 from skinnet.shape.model import ShapeModel
-from skinnet.shape.procedural_head import IDENTITY_SIZE, compute_chart_angles, compute_head_radius
 from skinnet.shape.registration import Registration, register
 from skinnet.shape.similarity import Similarity, fit_similarity
 

@@ -29,13 +29,8 @@ from skimage.data import astronaut
 
 from benchmarks.report import Results, main
 from export.quantisation import halve, quantise_dynamically, quantise_statically
-from skinnet.inference import (
-    SHIPPED_ENCODER,
-    Decomposer,
-    OnnxModel,
-    get_decoder_path,
-    open_model,
-)
+from skinnet.inference import SHIPPED_ENCODER, Decomposer, OnnxModel, open_model
+from skinnet.inference._onnx_pair import get_decoder_path
 from train.batch import Batch
 from train.synthetic.faces import SyntheticFaces
 

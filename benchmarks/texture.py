@@ -23,8 +23,9 @@ from trimesh.triangles import closest_point
 from benchmarks.report import Results, main
 from skinnet.mesh import Mesh, TriangleTree, rasterise, repair_mesh
 from skinnet.mesh._orientation import is_inside_out
-from skinnet.texture.mirror import find_mirror_vertices
-from skinnet.texture.tutte import compute_tutte_embedding, count_flipped_triangles
+from skinnet.texture._flips import count_flipped_triangles
+from skinnet.texture._mirror import find_mirror_vertices
+from skinnet.texture.tutte import compute_tutte_embedding
 from skinnet.texture.warp import TextureSpace, warp_texture
 
 VERTICES = 53_490

@@ -9,8 +9,8 @@ from numpy.typing import NDArray
 
 from skinnet.errors import InputError
 from skinnet.files import make_folder
-from skinnet.images import write_png
 from skinnet.images._mark import Mark, read_mark
+from skinnet.images._png_file import write_png
 
 _VERB = "example"
 

@@ -10,8 +10,8 @@ from pathlib import Path
 from skimage.data import astronaut
 
 from skinnet import Decomposer
-from skinnet.images import write_png
-from skinnet.inference import draw_grid, draw_picture, draw_pigment_map
+from skinnet.images._png_file import write_png
+from skinnet.inference._tiles import draw_grid, draw_picture, draw_pigment_map
 
 TARGET = Path("demo/astronaut.png")
 

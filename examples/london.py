@@ -29,7 +29,7 @@ from skinnet.files import make_folder
 from skinnet.images import read_photo, srgb_to_linear
 from skinnet.pipeline import ColourSettings, invert_texture
 from skinnet.pipeline._source import Source, choose_folder
-from skinnet.shape import compute_chart_angles
+from skinnet.shape._procedural_head import compute_chart_angles
 from skinnet.texture import TextureSpace, WarpedTexture, warp_texture
 from train.synthetic.model_skins import save_model_skins
 from train.synthetic.scene import CHART_SIZE

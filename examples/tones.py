@@ -23,7 +23,7 @@ from examples._command import check_number, check_picture, run, write_picture
 from examples.lightstage import paint_person
 from skinnet.appearance import PigmentEdit, SkinColour, SkinTexture, edit_texture
 from skinnet.images import resize
-from skinnet.inference import draw_grid, draw_picture
+from skinnet.inference._tiles import draw_grid, draw_picture
 from skinnet.mesh import Mesh
 from skinnet.physics import F_BLOOD_RANGE, F_MEL_RANGE
 from skinnet.pipeline import RelightSettings

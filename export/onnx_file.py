@@ -21,7 +21,8 @@ from export.onnx_graph import finish
 from skinnet._version import __version__
 from skinnet.errors import InputError
 from skinnet.files import write_together
-from skinnet.inference import MAP_NAMES, ONNX_FORMAT, get_decoder_path
+from skinnet.inference import MAP_NAMES, ONNX_FORMAT
+from skinnet.inference._onnx_pair import get_decoder_path
 from skinnet.network import SkinAutoencoder
 from skinnet.physics import LIGHTS
 

@@ -8,7 +8,7 @@ from typing import Any
 from skinnet.errors import InputError
 from skinnet.files import READ_ERRORS
 from skinnet.images._result_names import choose_stem, compute_digest, describe_input
-from skinnet.inference import get_decoder_path
+from skinnet.inference._onnx_pair import get_decoder_path
 
 DEFAULT = Path("skin.onnx")
 

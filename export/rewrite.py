@@ -19,7 +19,8 @@ from skimage.data import astronaut
 from export.onnx_graph import finish
 from skinnet.errors import InputError
 from skinnet.files import write_together
-from skinnet.inference import SHIPPED_ENCODER, get_decoder_path, open_model
+from skinnet.inference import SHIPPED_ENCODER, open_model
+from skinnet.inference._onnx_pair import get_decoder_path
 
 CROPS = (np.s_[:200:2, 120:300:2], np.s_[::3, ::3], np.s_[:161, 140:301], np.s_[100:133, 200:237])
 """Of the astronaut: the head at half size, all, and odd sizes."""

@@ -65,7 +65,7 @@ def main(argv: Sequence[str] | None = None) -> int:
 
 def _run_pipeline(verb: str, arguments: list[str]) -> int:
     try:
-        from skinnet.pipeline.command import run_verb
+        from skinnet.pipeline._command import run_verb
 
         return run_verb(verb, arguments, PIPELINE[verb])
     except ModuleNotFoundError as error:

@@ -11,7 +11,8 @@ from PIL import Image
 
 from skinnet.cli import main
 from skinnet.errors import NoFaceError
-from skinnet.images import Box, write_png
+from skinnet.images import Box
+from skinnet.images._png_file import write_png
 from skinnet.images.picture import Picture
 from skinnet.inference.decomposer import Decomposer
 from skinnet.inference.decomposition import Decomposition

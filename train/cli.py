@@ -20,7 +20,7 @@ from lightning.pytorch.loggers import Logger
 
 from skinnet.errors import InputError
 from skinnet.network import read_checkpoint
-from skinnet.pipeline import SentenceParser
+from skinnet.pipeline._sentence_parser import SentenceParser
 from train.callbacks import LastCheckpoint, PictureGrid, make_best_checkpoint, report_best
 from train.fitted import FittedFaces
 from train.flags import check_flags, check_trainer, describe_no_step

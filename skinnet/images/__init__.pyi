@@ -2,10 +2,8 @@ from .box import Box as Box
 from .colour_space import ColourSpace as ColourSpace
 from .faces import find_face as find_face
 from .faces import frame_head as frame_head
-from .photograph import as_photo as as_photo
 from .photograph import read_photo as read_photo
 from .photograph import read_picture as read_picture
-from .photograph import write_png as write_png
 from .picture import Picture as Picture
 from .resizing import resize as resize
 from .skin_segmentation import segment_skin as segment_skin
@@ -17,7 +15,6 @@ __all__ = [
     "Box",
     "ColourSpace",
     "Picture",
-    "as_photo",
     "find_face",
     "frame_head",
     "linear_to_srgb",
@@ -27,5 +24,4 @@ __all__ = [
     "segment_skin",
     "srgb_to_linear",
     "to_uint8",
-    "write_png",
 ]

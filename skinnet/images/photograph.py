@@ -1,17 +1,15 @@
 """Pictures from files and from memory, and PNG files."""
 
 import warnings
-from collections.abc import Mapping
 from io import BufferedIOBase, BytesIO
 from pathlib import Path
 from typing import Any, BinaryIO
 
 import numpy as np
 from numpy.typing import NDArray
-from PIL import Image, PngImagePlugin
+from PIL import Image
 
 from skinnet.errors import InputError
-from skinnet.files import write_atomically
 from skinnet.images import _decode
 from skinnet.images.picture import Picture
 from skinnet.images.srgb import to_uint8
@@ -64,14 +62,16 @@ def read_picture(
 
 
 def read_photo(
-    source: str | Path | BinaryIO | BufferedIOBase, name: str | None = None
+    source: str | Path | BinaryIO | BufferedIOBase | Image.Image | NDArray[Any],
+    name: str | None = None,
 ) -> NDArray[np.uint8]:
     """Read a photograph as upright sRGB without alpha.
 
-    It is `read_picture`, whose transparent pixels are blended with white.
+    It is `read_picture`, whose transparent pixels are blended with white. Grey pictures are read
+    too, but a `Decomposer` refuses them.
 
     Args:
-        source: A path, or an open binary file.
+        source: A path, an open binary file, a Pillow image or an array, as for `read_picture`.
         name: Name of the photograph in error messages; the path by default.
 
     Returns:
@@ -82,67 +82,14 @@ def read_photo(
 
     Example:
         >>> from io import BytesIO
+        >>> import numpy as np
         >>> from skinnet.images import read_photo
         >>> read_photo(BytesIO(b"P6 2 1 255 " + bytes([255, 0, 0, 0, 0, 255]))).tolist()
         [[[255, 0, 0], [0, 0, 255]]]
-    """
-    return _make_writable(read_picture(source, name).srgb)
-
-
-def as_photo(image: str | Path | Image.Image | NDArray[Any]) -> NDArray[np.uint8]:
-    """Convert a path, a Pillow image or an array to uint8 sRGB.
-
-    Args:
-        image: A path, a Pillow image, or an sRGB array [H, W], [H, W, 1], [H, W, 3] or [H, W, 4] of
-            uint8 or of floats in [0, 1]. Transparent pixels are blended with white. The orientation
-            that a Pillow image carries is applied; remove the tag if you have turned it yourself.
-            Grey pictures are converted too, but a `Decomposer` does not read them.
-
-    Returns:
-        uint8 sRGB [H, W, 3].
-
-    Raises:
-        InputError: The image is of another type, shape or range, or cannot be read.
-
-    Example:
-        >>> import numpy as np
-        >>> from skinnet.images import as_photo
-        >>> as_photo(np.array([[0.0, 1.0]])).tolist()
+        >>> read_photo(np.array([[0.0, 1.0]])).tolist()
         [[[0, 0, 0], [255, 255, 255]]]
     """
-    return _make_writable(read_picture(image).srgb)
-
-
-def write_png(path: Path, array: NDArray[Any], text: Mapping[str, str] | None = None) -> None:
-    """Write a PNG file, completely or not at all.
-
-    Args:
-        path: The file to write.
-        array: uint8 sRGB [H, W, 3], or uint16 grey [H, W].
-        text: What to write into the file as tEXt chunks, by keyword.
-
-    Raises:
-        ValueError: The array is of another type or shape.
-
-    Example:
-        >>> from pathlib import Path
-        >>> import numpy as np
-        >>> from tempfile import mkdtemp
-        >>> from skinnet.images import read_photo, write_png
-        >>> path = Path(mkdtemp()) / "a.png"
-        >>> write_png(path, np.full((2, 3, 3), 7, np.uint8))
-        >>> read_photo(path).shape
-        (2, 3, 3)
-    """
-    kind = (array.dtype, array.shape[2:])
-    if kind not in ((np.dtype(np.uint8), (3,)), (np.dtype(np.uint16), ())):
-        raise ValueError(f"PNG is written from uint8 [H, W, 3] or uint16 [H, W]; got {kind}.")
-    info = PngImagePlugin.PngInfo()
-    for key, value in (text or {}).items():
-        info.add_text(key, value)
-    with write_atomically(path) as part:
-        # The fast level: the low bits of interpolated maps are noise that no level compresses.
-        Image.fromarray(array).save(part, "PNG", pnginfo=info, compress_level=1)
+    return _make_writable(read_picture(source, name).srgb)
 
 
 def _make_writable(srgb: NDArray[np.uint8]) -> NDArray[np.uint8]:

@@ -6,13 +6,8 @@ from .onnx_model import ONNX_FORMAT as ONNX_FORMAT
 from .onnx_model import SHIPPED_ENCODER as SHIPPED_ENCODER
 from .onnx_model import OnnxModel as OnnxModel
 from .onnx_model import OutputInfo as OutputInfo
-from .onnx_model import get_decoder_path as get_decoder_path
 from .onnx_model import open_model as open_model
-from .panel import TILE as TILE
-from .panel import draw_grid as draw_grid
 from .panel import draw_panel as draw_panel
-from .panel import draw_picture as draw_picture
-from .panel import draw_pigment_map as draw_pigment_map
 from .results import write_results as write_results
 
 __all__ = [
@@ -20,16 +15,11 @@ __all__ = [
     "MAP_NAMES",
     "ONNX_FORMAT",
     "SHIPPED_ENCODER",
-    "TILE",
     "Decomposer",
     "Decomposition",
     "OnnxModel",
     "OutputInfo",
-    "draw_grid",
     "draw_panel",
-    "draw_picture",
-    "draw_pigment_map",
-    "get_decoder_path",
     "open_model",
     "write_results",
 ]

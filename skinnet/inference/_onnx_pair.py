@@ -1,7 +1,27 @@
 """An encoder and a decoder belong together if one export wrote both."""
 
+from pathlib import Path
+
 from skinnet.errors import InputError
 from skinnet.inference.onnx_model import OnnxModel
+
+
+def get_decoder_path(encoder: Path) -> Path:
+    """Return the path of the decoder that belongs to an encoder.
+
+    Args:
+        encoder: X.onnx.
+
+    Returns:
+        X.decoder.onnx in the same folder.
+
+    Example:
+        >>> from pathlib import Path
+        >>> from skinnet.inference._onnx_pair import get_decoder_path
+        >>> get_decoder_path(Path("runs/skin.onnx")).name
+        'skin.decoder.onnx'
+    """
+    return encoder.with_name(f"{encoder.stem}.decoder.onnx")
 
 
 def refuse_other_export(encoder: OnnxModel, decoder: OnnxModel) -> None:

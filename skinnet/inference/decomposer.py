@@ -20,7 +20,7 @@ from skinnet.images.picture import Picture
 from skinnet.images.resizing import resize
 from skinnet.images.srgb import srgb_to_linear
 from skinnet.inference._editing import ColourChange, apply_change, compute_change, fade_edges
-from skinnet.inference._onnx_pair import refuse_other_export
+from skinnet.inference._onnx_pair import get_decoder_path, refuse_other_export
 from skinnet.inference._transparency import note_transparency
 from skinnet.inference.decomposition import Decomposition
 from skinnet.inference.full_resolution._colour_table import tabulate_colours
@@ -30,7 +30,6 @@ from skinnet.inference.onnx_model import (
     MAP_NAMES,
     SHIPPED_ENCODER,
     OnnxModel,
-    get_decoder_path,
     open_model,
 )
 

@@ -104,24 +104,6 @@ class OnnxModel:
         return dict(zip(names, values, strict=True))
 
 
-def get_decoder_path(encoder: Path) -> Path:
-    """Return the path of the decoder that belongs to an encoder.
-
-    Args:
-        encoder: X.onnx.
-
-    Returns:
-        X.decoder.onnx in the same folder.
-
-    Example:
-        >>> from pathlib import Path
-        >>> from skinnet.inference import get_decoder_path
-        >>> get_decoder_path(Path("runs/skin.onnx")).name
-        'skin.decoder.onnx'
-    """
-    return encoder.with_name(f"{encoder.stem}.decoder.onnx")
-
-
 def open_model(path: Path, kind: str, threads: int | None = None) -> OnnxModel:
     """Open an encoder or a decoder.
 

@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 from skinnet.errors import InputError
 from skinnet.files import write_text, write_together
 from skinnet.images._mark import Mark
-from skinnet.images.photograph import write_png
+from skinnet.images._png_file import write_png
 from skinnet.inference.decomposition import Decomposition
 from skinnet.inference.panel import draw_panel
 

@@ -7,7 +7,7 @@ import numpy as np
 
 from skinnet.errors import InputError
 from skinnet.files import write_together
-from skinnet.images.photograph import write_png
+from skinnet.images._png_file import write_png
 from skinnet.mesh._content import join_parts, read_content
 from skinnet.mesh._mesh_parts import MeshContent
 from skinnet.mesh._texture_beside import find_texture_beside

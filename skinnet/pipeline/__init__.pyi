@@ -1,9 +1,7 @@
 from .calibrate import CalibratedColours as CalibratedColours
 from .calibrate import ColourSettings as ColourSettings
-from .command import run_verb as run_verb
 from .initial_pose import find_initial_pose as find_initial_pose
 from .relight import RelightSettings as RelightSettings
-from .sentence_parser import SentenceParser as SentenceParser
 from .texture_inversion import invert_texture as invert_texture
 from .texture_space import WarpSettings as WarpSettings
 from .texture_space import embed_model as embed_model
@@ -12,10 +10,8 @@ __all__ = [
     "CalibratedColours",
     "ColourSettings",
     "RelightSettings",
-    "SentenceParser",
     "WarpSettings",
     "embed_model",
     "find_initial_pose",
     "invert_texture",
-    "run_verb",
 ]

@@ -12,9 +12,10 @@ from skinnet.appearance.colour import SkinColour
 from skinnet.appearance.edit import PigmentEdit, edit_texture
 from skinnet.appearance.maps_file import load_maps, save_maps
 from skinnet.appearance.skin_texture import SkinTexture
+from skinnet.images._png_file import write_png
 from skinnet.images._result_names import choose_stem
-from skinnet.images.photograph import read_photo, write_png
-from skinnet.inference.panel import draw_grid, draw_picture
+from skinnet.images.photograph import read_photo
+from skinnet.inference._tiles import draw_grid, draw_picture
 from skinnet.mesh.mesh_file import read_mesh, write_mesh
 from skinnet.pipeline._maps_writer import (
     add_texture,

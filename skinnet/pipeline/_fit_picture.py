@@ -3,7 +3,7 @@
 import numpy as np
 from jaxtyping import UInt8
 
-from skinnet.inference.panel import _draw_map, draw_grid, draw_picture
+from skinnet.inference._tiles import draw_grid, draw_map, draw_picture
 from skinnet.mesh.mesh import Mesh
 from skinnet.pipeline import relight
 from skinnet.render.lights import DirectionalLight, SphericalHarmonics
@@ -32,7 +32,7 @@ def draw_fit(scan: Mesh, model: Mesh, fit: Registration) -> UInt8[np.ndarray, "h
     tiles = (
         draw_picture("scan", _render_plaster(scan, view)),
         draw_picture("fitted model", _render_plaster(model, view)),
-        _draw_map(
+        draw_map(
             "distance to the scan",
             distance,
             buffers.hit.astype(np.float64),

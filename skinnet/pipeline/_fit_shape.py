@@ -8,8 +8,8 @@ import numpy as np
 from jsonargparse import ArgumentParser, Namespace
 
 from skinnet.errors import InputError
+from skinnet.images._png_file import write_png
 from skinnet.images._result_names import lock_folder
-from skinnet.images.photograph import write_png
 from skinnet.mesh.mesh import Mesh
 from skinnet.mesh.mesh_file import write_mesh
 from skinnet.pipeline._fit_archive import load_fit, save_fit

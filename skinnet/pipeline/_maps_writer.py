@@ -11,9 +11,15 @@ from skinnet.appearance.colour import SkinColour
 from skinnet.appearance.edit import PigmentEdit, edit_texture
 from skinnet.appearance.maps_file import save_maps
 from skinnet.appearance.skin_texture import SkinTexture
-from skinnet.images.photograph import write_png
+from skinnet.images._png_file import write_png
 from skinnet.images.srgb import linear_to_srgb, to_uint8
-from skinnet.inference.panel import BLANK, _round_up, draw_grid, draw_picture, draw_pigment_map
+from skinnet.inference._tiles import (
+    BLANK,
+    draw_grid,
+    draw_picture,
+    draw_pigment_map,
+    round_up,
+)
 from skinnet.mesh.mesh import Mesh
 from skinnet.mesh.mesh_file import write_mesh
 from skinnet.pipeline import relight
@@ -126,4 +132,4 @@ def choose_scale_ends(textures: Sequence[SkinTexture]) -> tuple[float, float]:
         max(float(np.percentile(getattr(one, name)[one.mask], 99)) for one in textures)
         for name in ("f_mel", "f_blood")
     )
-    return _round_up(mel), _round_up(blood)
+    return round_up(mel), round_up(blood)

@@ -20,7 +20,13 @@ from skinnet.appearance.measures import Measures
 from skinnet.errors import InputError
 from skinnet.files import write_atomically
 from skinnet.images.srgb import linear_to_srgb, to_uint8
-from skinnet.inference.panel import BLANK, _round_up, draw_grid, draw_picture, draw_pigment_map
+from skinnet.inference._tiles import (
+    BLANK,
+    draw_grid,
+    draw_picture,
+    draw_pigment_map,
+    round_up,
+)
 
 AlbedoRenderer = Callable[[Float32[np.ndarray, "size size 3"]], UInt8[np.ndarray, "height width 3"]]
 """Renders a linear RGB albedo as uint8 sRGB, on the mean shape for instance."""
@@ -144,7 +150,7 @@ def _draw_pigment(
     mask: Bool[np.ndarray, "size size"],
 ) -> list[Image.Image]:
     """Draw tiles of one pigment on one scale, so that they can be compared."""
-    top = _round_up(float(np.percentile([values[mask] for values in maps], 99)))
+    top = round_up(float(np.percentile([values[mask] for values in maps], 99)))
     share = mask.astype(np.float64)
     return [
         draw_pigment_map(name, values, share, top, caption)

@@ -13,7 +13,7 @@ from skinnet.appearance.joint import JointModel
 from skinnet.appearance.linear import LinearModel
 from skinnet.appearance.measures import Measures
 from skinnet.files import write_text
-from skinnet.images.photograph import write_png
+from skinnet.images._png_file import write_png
 from skinnet.mesh.mesh_file import read_mesh
 from skinnet.pipeline import relight
 from skinnet.pipeline._fit_archive import load_fit

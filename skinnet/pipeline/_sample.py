@@ -10,8 +10,8 @@ from skinnet.appearance.hybrid import HybridModel
 from skinnet.appearance.maps_file import save_maps
 from skinnet.appearance.skin_texture import SkinTexture
 from skinnet.errors import InputError
-from skinnet.images.photograph import write_png
-from skinnet.inference.panel import draw_grid, draw_picture
+from skinnet.images._png_file import write_png
+from skinnet.inference._tiles import draw_grid, draw_picture
 from skinnet.pipeline._build_model import MODEL_FOLDER
 from skinnet.pipeline._maps_writer import choose_scale_ends, draw_pigments, show_albedo
 from skinnet.pipeline._output import MAPS_END, add_output, make_output_folder

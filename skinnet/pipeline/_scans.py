@@ -18,7 +18,8 @@ from skinnet.mesh.repair import repair_mesh
 from skinnet.pipeline._output import SCAN_ENDS, add_output, make_output_folder
 from skinnet.pipeline._progress import log
 from skinnet.pipeline._source import Source, find_result_verb
-from skinnet.shape.landmarks import check_landmarks, read_landmarks
+from skinnet.shape._landmark_check import check_landmarks
+from skinnet.shape.landmarks import read_landmarks
 from skinnet.shape.model import ShapeModel
 from skinnet.shape.model_formats import load_shape_model
 

@@ -12,8 +12,8 @@ import torch
 from jaxtyping import Float
 
 from skinnet.appearance.colour import SkinColour
+from skinnet.calibration._exposure import fit_exposure
 from skinnet.calibration.colour_transform import calibrate
-from skinnet.calibration.exposure import fit_exposure
 from skinnet.errors import InputError
 from skinnet.images.srgb import srgb_to_linear
 from skinnet.physics.inversion import SkinInverse

@@ -7,7 +7,7 @@ import numpy as np
 from jaxtyping import Float32, UInt8
 
 from skinnet.errors import InputError
-from skinnet.inference.panel import TILE
+from skinnet.inference._tiles import TILE
 from skinnet.mesh.mesh import Mesh
 from skinnet.render.lights import DirectionalLight, Light, SphericalHarmonics
 from skinnet.render.rendering import SKIN_SPECULAR, render

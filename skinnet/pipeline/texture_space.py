@@ -6,7 +6,7 @@ import numpy as np
 
 from skinnet.errors import InputError
 from skinnet.shape.model import ShapeModel
-from skinnet.texture.mirror import find_mirror_vertices
+from skinnet.texture._mirror import find_mirror_vertices
 from skinnet.texture.projection import MAX_NORMAL_ANGLE
 from skinnet.texture.tutte import compute_tutte_embedding
 

@@ -7,8 +7,8 @@ import numpy as np
 from jaxtyping import Float, Shaped
 
 from skinnet.errors import InputError
+from skinnet.mesh._sampling import sample_bilinear
 from skinnet.mesh._vectors import normalise
-from skinnet.mesh.sampling import sample_bilinear
 from skinnet.render.lights import Light
 from skinnet.render.visibility import GeometryBuffers
 

@@ -6,8 +6,8 @@ import numpy as np
 from jaxtyping import Bool, Float, Int
 
 from skinnet.errors import InputError
+from skinnet.mesh._normals import compute_vertex_normals
 from skinnet.mesh.mesh import Mesh
-from skinnet.mesh.normals import compute_vertex_normals
 from skinnet.render._ray_caster import make_caster
 from skinnet.render._ray_samples import build_tangents, rotate, sample_disc
 

@@ -1,15 +1,11 @@
 from ._ibug import IBUG as IBUG
 from .fit_settings import FitSettings as FitSettings
 from .fit_settings import StageRecord as StageRecord
-from .landmarks import check_landmarks as check_landmarks
-from .landmarks import read_landmark_vertices as read_landmark_vertices
 from .landmarks import read_landmarks as read_landmarks
 from .landmarks import write_landmarks as write_landmarks
 from .model import ShapeModel as ShapeModel
 from .model_formats import load_shape_model as load_shape_model
 from .model_formats import save_shape_model as save_shape_model
-from .procedural_head import compute_chart_angles as compute_chart_angles
-from .procedural_head import compute_head_radius as compute_head_radius
 from .registered_meshes import build_shape_model as build_shape_model
 from .registration import Registration as Registration
 from .registration import register as register
@@ -24,12 +20,8 @@ __all__ = [
     "Similarity",
     "StageRecord",
     "build_shape_model",
-    "check_landmarks",
-    "compute_chart_angles",
-    "compute_head_radius",
     "fit_similarity",
     "load_shape_model",
-    "read_landmark_vertices",
     "read_landmarks",
     "register",
     "save_shape_model",

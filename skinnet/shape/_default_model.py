@@ -86,7 +86,7 @@ def build_procedural_model(rows: int = 115, columns: int = 153) -> ShapeModel:
 def _compute_axes(
     rows: int, columns: int
 ) -> tuple[Float[np.ndarray, "columns"], Float[np.ndarray, "rows"]]:
-    from skinnet.shape.procedural_head import compute_chart_angles
+    from skinnet.shape._procedural_head import compute_chart_angles
 
     azimuth, elevation = (
         axis.double().numpy().ravel() for axis in compute_chart_angles(rows, columns)
@@ -157,7 +157,7 @@ def _sample_radius(half: Bool[np.ndarray, "rows half"]) -> Float[np.ndarray, "sa
     """Sample the radius of faces over the chart's right half and its middle column."""
     import torch
 
-    from skinnet.shape.procedural_head import IDENTITY_SIZE, compute_head_radius
+    from skinnet.shape._procedural_head import IDENTITY_SIZE, compute_head_radius
 
     rng = torch.Generator().manual_seed(0)
     numbers = torch.randn(SAMPLES // 2, IDENTITY_SIZE, generator=rng, dtype=torch.float64)

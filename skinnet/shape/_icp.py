@@ -4,7 +4,7 @@ import numpy as np
 from jaxtyping import Bool, Float
 
 from skinnet.errors import InputError
-from skinnet.mesh.normals import compute_vertex_normals
+from skinnet.mesh._normals import compute_vertex_normals
 from skinnet.shape._moments import compute_moments
 from skinnet.shape._scan_points import NearestPoints, ScanPoints
 from skinnet.shape._separable import SeparableObjective, Solution, minimise

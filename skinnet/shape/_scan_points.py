@@ -8,9 +8,9 @@ from scipy.spatial import cKDTree
 from trimesh.remesh import subdivide
 
 from skinnet.errors import InputError
+from skinnet.mesh._normals import compute_vertex_normals
 from skinnet.mesh._topology import find_boundary_edges, list_half_edges
 from skinnet.mesh.mesh import Mesh
-from skinnet.mesh.normals import compute_vertex_normals
 
 MIN_POINTS = 60_000
 """Triangles of a coarser scan are split into four until it has this many points."""

@@ -14,8 +14,8 @@ from skinnet.mesh._mesh_parts import MESH_SUFFIXES
 from skinnet.shape._basel import load_basel_2009, load_basel_2017
 from skinnet.shape._default_model import build_default_model
 from skinnet.shape._ict import NEUTRAL, load_ict_folder, read_ict_arrays
+from skinnet.shape._landmark_vertices import read_landmark_vertices
 from skinnet.shape._registered_files import load_registered_meshes
-from skinnet.shape.landmarks import read_landmark_vertices
 from skinnet.shape.model import ShapeModel
 
 VERSION = "1"

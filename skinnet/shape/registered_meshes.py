@@ -6,8 +6,8 @@ import numpy as np
 from jaxtyping import Float
 
 from skinnet.errors import InputError
+from skinnet.mesh._length_unit import guess_length_unit
 from skinnet.mesh.mesh import Mesh
-from skinnet.mesh.repair import guess_length_unit
 from skinnet.shape.model import ShapeModel
 from skinnet.shape.similarity import fit_similarity
 

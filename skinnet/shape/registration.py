@@ -9,11 +9,11 @@ from jaxtyping import Bool, Float
 from skinnet.errors import InputError
 from skinnet.mesh.mesh import Mesh
 from skinnet.shape._icp import IcpStage
+from skinnet.shape._landmark_check import MIN_COUNT
 from skinnet.shape._moments import compute_moments
 from skinnet.shape._scan_points import ScanPoints
 from skinnet.shape._separable import SeparableObjective, minimise
 from skinnet.shape.fit_settings import FitSettings, StageRecord
-from skinnet.shape.landmarks import MIN_COUNT
 from skinnet.shape.model import ShapeModel
 from skinnet.shape.similarity import Similarity, fit_similarity
 

@@ -8,12 +8,12 @@ from jaxtyping import Bool, Float, Int
 from skinnet.errors import InputError
 from skinnet.images.srgb import srgb_to_linear
 from skinnet.mesh._barycentric import interpolate
+from skinnet.mesh._normals import compute_vertex_normals
+from skinnet.mesh._sampling import sample_bilinear
 from skinnet.mesh._topology import find_boundary_edges, label_components, weld
 from skinnet.mesh._vectors import measure_edges, normalise
 from skinnet.mesh.closest_point import ClosestPoints, TriangleTree
 from skinnet.mesh.mesh import Mesh
-from skinnet.mesh.normals import compute_vertex_normals
-from skinnet.mesh.sampling import sample_bilinear
 from skinnet.texture.warp import TextureSpace, WarpedTexture, warp_texture
 
 MAX_NORMAL_ANGLE = 60.0

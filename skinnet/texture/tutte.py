@@ -21,6 +21,7 @@ from skinnet.texture._disc import (
     find_rim_and_holes,
     pair_holes,
 )
+from skinnet.texture._flips import count_flipped_triangles
 
 MARGIN = 1 / 128
 """Distance of the circle from the edge of the texture, so that filters stay inside."""
@@ -106,30 +107,6 @@ def compute_tutte_embedding(
     uv = uv[: len(vertices)]
     _check_flips(uv, triangles)
     return 0.5 + (0.5 - MARGIN) * uv
-
-
-def count_flipped_triangles(
-    uv: Float[np.ndarray, "vertices 2"], triangles: Int[np.ndarray, "triangles 3"]
-) -> int:
-    """Count the triangles that are not counter-clockwise in a texture space.
-
-    Args:
-        uv: Texture coordinates of the vertices.
-        triangles: Vertices of each triangle.
-
-    Returns:
-        The number of flipped or empty triangles.
-
-    Example:
-        >>> import numpy as np
-        >>> from skinnet.texture import count_flipped_triangles
-        >>> corners = np.array([[0.0, 0], [1, 0], [0, 1]])
-        >>> count_flipped_triangles(corners, np.array([[0, 1, 2], [0, 2, 1]]))
-        1
-    """
-    a, b, c = np.moveaxis(uv[triangles], 1, 0)
-    ab, ac = b - a, c - a
-    return int((~(ab[:, 0] * ac[:, 1] - ab[:, 1] * ac[:, 0] > 0)).sum())
 
 
 def _compute_weights(

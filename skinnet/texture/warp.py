@@ -8,8 +8,8 @@ from jaxtyping import Bool, Float, Int, Shaped
 
 from skinnet.errors import InputError
 from skinnet.mesh._barycentric import compute_barycentric_gradients
+from skinnet.mesh._sampling import sample_bilinear
 from skinnet.mesh.raster import rasterise
-from skinnet.mesh.sampling import sample_bilinear
 
 MAX_SAMPLES = 8
 """Largest number of samples along a texel's side; a denser picture is subsampled."""

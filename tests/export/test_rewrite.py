@@ -10,7 +10,8 @@ from onnx import helper, numpy_helper
 from export import rewrite as rewriting
 from export.rewrite import main, rewrite
 from skinnet.errors import InputError
-from skinnet.inference import SHIPPED_ENCODER, get_decoder_path
+from skinnet.inference import SHIPPED_ENCODER
+from skinnet.inference._onnx_pair import get_decoder_path
 
 
 @pytest.fixture

@@ -22,7 +22,8 @@ from PIL import Image
 from skinnet.cli import main
 from skinnet.errors import InputError
 from skinnet.images._named_spaces import DISPLAY_P3
-from skinnet.mesh import Mesh, read_mesh, sample_bilinear
+from skinnet.mesh import Mesh, read_mesh
+from skinnet.mesh._sampling import sample_bilinear
 
 PLACES = (np.arange(8) + 0.5) / 8
 """Where the square is looked at, along x and y."""

@@ -25,7 +25,8 @@ from skinnet.appearance._model_arrays import read_arrays, write_arrays
 from skinnet.appearance.stack import open_stack
 from skinnet.cli import main
 from skinnet.errors import InputError
-from skinnet.inference import SHIPPED_ENCODER, get_decoder_path, open_model
+from skinnet.inference import SHIPPED_ENCODER, open_model
+from skinnet.inference._onnx_pair import get_decoder_path
 from skinnet.inference.onnx_model import ONNX_FORMAT
 from skinnet.network import SkinAutoencoder
 from skinnet.network._weights import SHIPPED_WEIGHTS, WEIGHTS_FORMAT

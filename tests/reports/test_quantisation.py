@@ -22,7 +22,8 @@ from skimage.data import astronaut
 
 from export.quantisation import halve, quantise_dynamically, quantise_statically
 from skinnet import Decomposer
-from skinnet.inference import SHIPPED_ENCODER, get_decoder_path, open_model
+from skinnet.inference import SHIPPED_ENCODER, open_model
+from skinnet.inference._onnx_pair import get_decoder_path
 
 Feeds = list[dict[str, np.ndarray]]
 CROPS = (np.s_[:160, 140:300], np.s_[:200:2, 120:300:2], np.s_[10:131, 160:280])

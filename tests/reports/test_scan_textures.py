@@ -8,7 +8,8 @@ from PIL import Image
 
 from skinnet.cli import main
 from skinnet.errors import InputError
-from skinnet.mesh import Mesh, read_mesh, sample_bilinear
+from skinnet.mesh import Mesh, read_mesh
+from skinnet.mesh._sampling import sample_bilinear
 
 SIZE = 16
 PLACES = (np.arange(7) + 0.5) / 7

@@ -15,8 +15,9 @@ from toned_pictures import TONES
 from torch.utils.data import DataLoader
 
 from skinnet.errors import InputError
-from skinnet.images import srgb_to_linear, write_png
+from skinnet.images import srgb_to_linear
 from skinnet.images._mark import EDITED, PROCESSING_SOFTWARE, Mark, read_mark
+from skinnet.images._png_file import write_png
 from skinnet.network import read_checkpoint
 from train.callbacks import LastCheckpoint, PictureGrid
 from train.cli import main

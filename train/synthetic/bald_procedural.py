@@ -1,10 +1,10 @@
-"""Bald heads of `skinnet.shape.procedural_head`, with eyes, mouth and neck."""
+"""Bald heads of `skinnet.shape._procedural_head`, with eyes, mouth and neck."""
 
 import numpy as np
 import torch
 from jaxtyping import Float
 
-from skinnet.shape.procedural_head import CHART_EXTENT, IDENTITY_SIZE, compute_head_radius
+from skinnet.shape._procedural_head import CHART_EXTENT, IDENTITY_SIZE, compute_head_radius
 from train.synthetic.body import Neck
 from train.synthetic.labelled_mesh import LabelledMesh, clip, join, label_mesh, triangulate_grid
 from train.synthetic.labels import EYE, SKIN, TEETH

@@ -9,7 +9,7 @@ from jaxtyping import Float
 from torch import Tensor
 
 from skinnet.network.autoencoder import F_BLOOD_MAX, F_MEL_MAX
-from skinnet.shape import compute_chart_angles
+from skinnet.shape._procedural_head import compute_chart_angles
 from train.synthetic.facial_hair import (
     cover_with_beard,
     cover_with_brows,

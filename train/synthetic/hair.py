@@ -5,7 +5,7 @@ from typing import NamedTuple
 import numpy as np
 from jaxtyping import Float
 
-from skinnet.shape.procedural_head import ROUNDNESS
+from skinnet.shape._procedural_head import ROUNDNESS
 from train.synthetic.labelled_mesh import (
     LabelledMesh,
     clip_triangles,

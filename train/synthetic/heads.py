@@ -14,7 +14,7 @@ from train.synthetic.labels import EYE, SKIN
 
 
 def make_procedural_head(rng: np.random.Generator) -> LabelledMesh:
-    """Make a whole head of `skinnet.shape.procedural_head`."""
+    """Make a whole head of `skinnet.shape._procedural_head`."""
     return complete_head(*make_bald_procedural(rng), rng)
 
 

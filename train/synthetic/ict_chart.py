@@ -25,7 +25,7 @@ mean of their landmarks."""
 def chart_skin(
     mean: Float[np.ndarray, "vertices 3"], landmarks: Int[np.ndarray, "68"]
 ) -> Float[np.ndarray, "vertices 2"]:
-    """Find the place of each vertex on the chart of `skinnet.shape.procedural_head`.
+    """Find the place of each vertex on the chart of `skinnet.shape._procedural_head`.
 
     A thin-plate spline takes the mean head's own angles to those at which its features are painted.
 

@@ -6,7 +6,7 @@ from typing import NamedTuple
 import numpy as np
 from jaxtyping import Bool, Float, Int, UInt8
 
-from skinnet.mesh import compute_vertex_normals
+from skinnet.mesh._normals import compute_vertex_normals
 
 
 class LabelledMesh(NamedTuple):

@@ -9,7 +9,7 @@ from torch import Tensor
 
 from skinnet.network.autoencoder import SHADING_MAX, SkinMaps
 from skinnet.physics import Capture, SkinDecoder, luminance
-from skinnet.shape.procedural_head import CHART_EXTENT
+from skinnet.shape._procedural_head import CHART_EXTENT
 from train.batch import Batch
 from train.synthetic.face_painting import FaceCharts, paint_face
 from train.synthetic.labels import SKIN

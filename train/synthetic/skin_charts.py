@@ -7,7 +7,7 @@ import torch
 from jaxtyping import Bool, Float
 from scipy.ndimage import distance_transform_edt
 
-from skinnet.shape import compute_chart_angles
+from skinnet.shape._procedural_head import compute_chart_angles
 from train.synthetic.facial_hair import cover_with_beard
 from train.synthetic.scene import CHART_SIZE, BeardParameters
 from train.synthetic.tensors import soft_step

@@ -5,7 +5,7 @@ import pytest
 
 from benchmarks.calibration import known_colours, model_colours
 from skinnet import InputError
-from skinnet.calibration import fit_exposure
+from skinnet.calibration._exposure import fit_exposure
 
 
 @pytest.mark.parametrize("factor", [0.5, 1.0, 2.5])

@@ -14,7 +14,7 @@ from picture_files import (
 from PIL import Image
 
 from skinnet.errors import InputError
-from skinnet.images import _decode, as_photo, read_photo, read_picture
+from skinnet.images import _decode, read_photo, read_picture
 
 
 @pytest.mark.parametrize("orientation", range(1, 9))
@@ -79,7 +79,7 @@ def test_transparency_is_laid_on_white(tmp_path: Path, mode: str) -> None:
 
 def test_half_transparency_is_half_white() -> None:
     image = Image.new("RGBA", (2, 2), (100, 0, 200, 128))
-    np.testing.assert_allclose(as_photo(image)[0, 0], [177, 127, 227], atol=1)
+    np.testing.assert_allclose(read_photo(image)[0, 0], [177, 127, 227], atol=1)
 
 
 @pytest.mark.parametrize(
@@ -152,4 +152,4 @@ def test_pictures_up_to_the_limit_are_read_without_a_warning(
 def test_large_arrays_are_refused(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(_decode, "MAX_PIXELS", 8)
     with pytest.raises(InputError, match="3 x 3, more pixels than the limit of 8"):
-        as_photo(np.zeros((3, 3), np.uint8))
+        read_photo(np.zeros((3, 3), np.uint8))

@@ -5,7 +5,7 @@ import numpy as np
 import pytest
 from skimage import data
 
-from skinnet.images import Box, as_photo, find_face, frame_head, read_photo, resize
+from skinnet.images import Box, find_face, frame_head, read_photo, resize
 
 FACE = Box(176, 71, 268, 163)
 
@@ -47,7 +47,7 @@ def test_no_face_is_none(shape: tuple[int, int]) -> None:
 
 @pytest.mark.parametrize("name", ["coffee", "rocket", "brick", "gravel", "coins", "moon"])
 def test_no_face_is_found_in_things(name: str) -> None:
-    assert find_face(as_photo(getattr(data, name)())) is None
+    assert find_face(read_photo(getattr(data, name)())) is None
 
 
 @pytest.mark.parametrize("side", [200, 1000])

@@ -7,7 +7,6 @@ import pytest
 from PIL import Image, PngImagePlugin
 
 from skinnet import __version__
-from skinnet.images import write_png
 from skinnet.images._mark import (
     EDITED,
     PROCESSING_SOFTWARE,
@@ -17,6 +16,7 @@ from skinnet.images._mark import (
     read_mark,
     read_summary,
 )
+from skinnet.images._png_file import write_png
 
 DIGEST = "0123456789abcdef" * 4
 EDIT = Mark("edit", EDITED, DIGEST)

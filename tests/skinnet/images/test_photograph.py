@@ -10,7 +10,7 @@ from picture_files import make_photo, make_srgb_profile, save_image
 from PIL import Image
 
 from skinnet.errors import InputError
-from skinnet.images import as_photo, read_photo, write_png
+from skinnet.images import read_photo
 
 
 @pytest.mark.parametrize("suffix", ["png", "bmp", "tif", "webp", "ppm", "gif"])
@@ -55,7 +55,7 @@ def test_a_folder_and_a_name_that_cannot_be_are_refused(tmp_path: Path) -> None:
     ],
 )
 def test_arrays_are_photographs(array: np.ndarray) -> None:
-    np.testing.assert_array_equal(as_photo(array), np.full((4, 5, 3), 128))
+    np.testing.assert_array_equal(read_photo(array), np.full((4, 5, 3), 128))
 
 
 @pytest.mark.parametrize(
@@ -75,7 +75,7 @@ def test_arrays_are_photographs(array: np.ndarray) -> None:
 )
 def test_other_arrays_are_refused(array: np.ndarray, words: str) -> None:
     with pytest.raises(ValueError, match=words):
-        as_photo(array)
+        read_photo(array)
 
 
 SIDES = st.integers(1, 12)
@@ -134,17 +134,3 @@ def test_damage_gives_a_photograph_or_a_sentence(data: st.DataObject, kind: str)
         assert sentence.endswith((".", "?"))
     else:
         assert photo.dtype == np.uint8 and photo.ndim == 3 and photo.shape[2] == 3
-
-
-def test_png_carries_16_bits_and_text(tmp_path: Path) -> None:
-    grey = np.array([[0, 1, 65535]], np.uint16)
-    write_png(tmp_path / "a.png", grey, {"scale": "0.5", "unit": "fraction"})
-    with Image.open(tmp_path / "a.png") as image:
-        np.testing.assert_array_equal(np.asarray(image), grey)
-        assert image.text == {"scale": "0.5", "unit": "fraction"}
-
-
-def test_png_refuses_other_arrays(tmp_path: Path) -> None:
-    with pytest.raises(ValueError, match="PNG is written from"):
-        write_png(tmp_path / "a.png", np.zeros((2, 2, 3), np.uint16))
-    assert not list(tmp_path.iterdir())

@@ -7,8 +7,9 @@ import onnx
 import pytest
 from onnx import TensorProto, helper
 
-from skinnet.inference import SHIPPED_ENCODER, get_decoder_path
+from skinnet.inference import SHIPPED_ENCODER
 from skinnet.inference._onnx_header import Header, read_header
+from skinnet.inference._onnx_pair import get_decoder_path
 
 
 @pytest.mark.parametrize("path", [SHIPPED_ENCODER, get_decoder_path(SHIPPED_ENCODER)])

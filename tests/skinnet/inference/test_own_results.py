@@ -8,8 +8,8 @@ import pytest
 from flat_decomposer import save
 
 from skinnet.errors import InputError
-from skinnet.images import write_png
 from skinnet.images._mark import EDITED, Mark
+from skinnet.images._png_file import write_png
 from skinnet.images._result_names import compute_digest, lock_folder
 from skinnet.inference._own_results import Source, choose_edit_target, choose_result_stem
 

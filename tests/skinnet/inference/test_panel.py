@@ -3,7 +3,7 @@ import pytest
 
 from skinnet import Decomposition
 from skinnet.inference import draw_panel
-from skinnet.inference.panel import _round_up
+from skinnet.inference._tiles import round_up
 
 
 def test_the_panel_shows_eight_pictures(
@@ -19,4 +19,4 @@ def test_the_panel_shows_eight_pictures(
     ("value", "top"), [(0.14, 0.15), (0.15, 0.15), (0.9, 1), (1, 1), (0, 1e-6), (37, 40)]
 )
 def test_scales_end_at_round_numbers(value: float, top: float) -> None:
-    assert _round_up(float(value)) == pytest.approx(top)
+    assert round_up(float(value)) == pytest.approx(top)

@@ -3,9 +3,9 @@
 import numpy as np
 from trimesh.creation import box, icosphere
 
+from skinnet.mesh._normals import compute_vertex_normals
 from skinnet.mesh._topology import weld
 from skinnet.mesh._vectors import normalise
-from skinnet.mesh.normals import compute_vertex_normals
 
 
 def test_a_sphere_s_normals_point_outwards() -> None:

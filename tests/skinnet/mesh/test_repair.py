@@ -13,7 +13,7 @@ from skinnet.errors import InputError
 from skinnet.mesh._orientation import is_inside_out
 from skinnet.mesh.mesh import Mesh
 from skinnet.mesh.mesh_file import read_mesh
-from skinnet.mesh.repair import guess_length_unit, repair_mesh
+from skinnet.mesh.repair import repair_mesh
 
 
 def join_meshes(one: Mesh, *others: Mesh) -> Mesh:
@@ -168,24 +168,6 @@ def test_faces_across_the_border_of_the_texture_are_refused() -> None:
     mesh = dome()
     with pytest.raises(InputError, match=r"dome has 16 faces across the border of its texture"):
         repair_mesh(replace(mesh, uv=mesh.uv + [0.1, 0]), need_texture=True)
-
-
-@pytest.mark.parametrize(
-    ("unit", "millimetres"),
-    [("metres", 1000.0), ("centimetres", 10.0), ("millimetres", 1.0), ("micrometres", 0.001)],
-)
-@pytest.mark.parametrize("height", [110, 180, 580])
-def test_the_unit_is_guessed(unit: str, millimetres: float, height: float) -> None:
-    mesh = dome(height=height / millimetres)
-    guess = guess_length_unit(mesh.vertices, "scan.obj")
-    assert guess.millimetres == millimetres
-    assert guess.note == f"scan.obj is taken to be in {unit}: it is {height} mm long."
-
-
-@pytest.mark.parametrize("height", [0.0, 3.0, 7000.0])
-def test_a_size_that_is_no_face_is_refused(height: float) -> None:
-    with pytest.raises(InputError, match=r"The mesh is .* units long, which is no face"):
-        guess_length_unit(dome(height=height).vertices)
 
 
 def test_real_scans_need_little(shared_data: Path) -> None:

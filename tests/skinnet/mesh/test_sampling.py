@@ -5,7 +5,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from skinnet.mesh import sample_bilinear
+from skinnet.mesh._sampling import sample_bilinear
 
 
 def test_pixels_keep_their_values_and_continue_beyond_the_edge() -> None:

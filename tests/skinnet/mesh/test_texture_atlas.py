@@ -2,8 +2,8 @@
 
 import numpy as np
 
-from skinnet.mesh import sample_bilinear
 from skinnet.mesh._mesh_parts import MeshGeometry, MeshPart
+from skinnet.mesh._sampling import sample_bilinear
 from skinnet.mesh._texture_atlas import pack_atlas, wrap_coordinates
 
 CORNERS = np.array([[0.0, 0], [1, 0], [1, 1]])

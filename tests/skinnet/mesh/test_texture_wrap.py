@@ -6,8 +6,8 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from skinnet.errors import InputError
-from skinnet.mesh import sample_bilinear
 from skinnet.mesh._mesh_parts import MeshGeometry
+from skinnet.mesh._sampling import sample_bilinear
 from skinnet.mesh._texture_wrap import Mapped, Wrap, wrap_texture
 
 RAMP = np.zeros((8, 64, 3), np.uint8) + (3 * np.arange(64, dtype=np.uint8))[None, :, None]

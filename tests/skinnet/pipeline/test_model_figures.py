@@ -12,7 +12,7 @@ from skinnet.appearance.linear import LinearModel
 from skinnet.appearance.measures import Measures
 from skinnet.appearance.stack import SubjectStack
 from skinnet.errors import InputError
-from skinnet.inference import TILE
+from skinnet.inference._tiles import TILE
 from skinnet.pipeline._model_figures import draw_hybrid, draw_linear, plot_measures
 
 

@@ -3,7 +3,7 @@
 import pytest
 
 from skinnet.errors import InputError
-from skinnet.pipeline.sentence_parser import SentenceParser
+from skinnet.pipeline._sentence_parser import SentenceParser
 
 
 def test_an_error_is_one_line_that_names_the_help() -> None:

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from skinnet.errors import InputError
-from skinnet.images.photograph import write_png
+from skinnet.images._png_file import write_png
 from skinnet.mesh import Mesh, write_mesh
 from skinnet.pipeline._source import Source, choose_folder, find_result_verb, read_result_mark
 

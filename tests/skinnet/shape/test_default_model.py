@@ -9,7 +9,7 @@ from skinnet.mesh._orientation import is_inside_out, label_face_components
 from skinnet.mesh._topology import list_boundary_loops
 from skinnet.shape._default_model import MODES, build_default_model, build_procedural_model
 from skinnet.shape._ibug import IBUG
-from skinnet.shape.procedural_head import CHART_EXTENT, IDENTITY_SIZE, compute_head_radius
+from skinnet.shape._procedural_head import CHART_EXTENT, IDENTITY_SIZE, compute_head_radius
 
 
 def find_partners() -> np.ndarray:

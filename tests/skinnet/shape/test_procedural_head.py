@@ -3,7 +3,7 @@
 import pytest
 import torch
 
-from skinnet.shape.procedural_head import (
+from skinnet.shape._procedural_head import (
     CHART_EXTENT,
     IDENTITY_SIZE,
     compute_chart_angles,

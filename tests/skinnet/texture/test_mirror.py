@@ -3,7 +3,7 @@
 import numpy as np
 
 from benchmarks.texture import make_face_mesh
-from skinnet.texture.mirror import find_mirror_vertices
+from skinnet.texture._mirror import find_mirror_vertices
 
 VERTICES, _ = make_face_mesh(24, 31)
 

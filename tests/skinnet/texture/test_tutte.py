@@ -9,8 +9,9 @@ from hypothesis import strategies as st
 
 from benchmarks.texture import make_face_mesh
 from skinnet.errors import InputError
-from skinnet.texture.mirror import find_mirror_vertices
-from skinnet.texture.tutte import MARGIN, compute_tutte_embedding, count_flipped_triangles
+from skinnet.texture._flips import count_flipped_triangles
+from skinnet.texture._mirror import find_mirror_vertices
+from skinnet.texture.tutte import MARGIN, compute_tutte_embedding
 
 VERTICES, TRIANGLES = make_face_mesh(24, 31)
 

@@ -14,7 +14,7 @@ from skinnet.appearance.skin_texture import SkinTexture
 from skinnet.appearance.stack_writer import write_stack
 from skinnet.errors import InputError
 from skinnet.physics import load_spectrum_to_srgb
-from skinnet.shape import compute_chart_angles
+from skinnet.shape._procedural_head import compute_chart_angles
 from train.synthetic.face_painting import paint_face
 from train.synthetic.faces import SyntheticFaces, SyntheticScenes
 from train.synthetic.head_cast import make_blank_cast

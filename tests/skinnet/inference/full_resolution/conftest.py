@@ -3,7 +3,8 @@ import pytest
 from painted_skin import TOP, Maps, paint_maps
 
 from skinnet import SkinDecoder
-from skinnet.inference import SHIPPED_ENCODER, OnnxModel, get_decoder_path, open_model
+from skinnet.inference import SHIPPED_ENCODER, OnnxModel, open_model
+from skinnet.inference._onnx_pair import get_decoder_path
 from skinnet.inference.full_resolution._colour_table import ColourTable, tabulate_colours
 
 

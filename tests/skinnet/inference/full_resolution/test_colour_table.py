@@ -4,7 +4,8 @@ from painted_skin import TOP
 
 from skinnet import SkinDecoder
 from skinnet.images import srgb_to_linear
-from skinnet.inference import CAPTURE_NAMES, SHIPPED_ENCODER, get_decoder_path, open_model
+from skinnet.inference import CAPTURE_NAMES, SHIPPED_ENCODER, open_model
+from skinnet.inference._onnx_pair import get_decoder_path
 from skinnet.inference.full_resolution._colour_table import ColourTable
 
 

@@ -20,7 +20,7 @@ class SentenceParser(ArgumentParser):
         InputError: Instead of a message on standard error and the end of the process.
 
     Example:
-        >>> from skinnet.pipeline import SentenceParser
+        >>> from skinnet.pipeline._sentence_parser import SentenceParser
         >>> parser = SentenceParser(prog="skinnet maps")
         >>> parser.renamed = {"colour": "color"}
         >>> parser.parse_args(["--colour=red"])

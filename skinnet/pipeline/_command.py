@@ -6,7 +6,7 @@ from typing import Any
 
 from jsonargparse import Namespace
 
-from skinnet.pipeline.sentence_parser import SentenceParser
+from skinnet.pipeline._sentence_parser import SentenceParser
 
 
 def run_verb(verb: str, arguments: Sequence[str], description: str) -> int:

@@ -24,7 +24,7 @@ def find_mirror_vertices(
 
     Example:
         >>> import numpy as np
-        >>> from skinnet.texture import find_mirror_vertices
+        >>> from skinnet.texture._mirror import find_mirror_vertices
         >>> find_mirror_vertices(np.array([[-1.0, 0, 0], [0, 2, 0], [1, 0, 0]]))
         array([2, 1, 0])
     """

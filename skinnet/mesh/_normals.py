@@ -23,7 +23,7 @@ def compute_vertex_normals(
 
     Example:
         >>> import numpy as np
-        >>> from skinnet.mesh import compute_vertex_normals
+        >>> from skinnet.mesh._normals import compute_vertex_normals
         >>> compute_vertex_normals(np.eye(3), np.array([[0, 1, 2]])).round(3)
         array([[0.577, 0.577, 0.577],
                [0.577, 0.577, 0.577],

@@ -22,7 +22,7 @@ def sample_bilinear(
 
     Example:
         >>> import numpy as np
-        >>> from skinnet.mesh import sample_bilinear
+        >>> from skinnet.mesh._sampling import sample_bilinear
         >>> picture = np.array([[[0], [10]]], np.uint8)
         >>> sample_bilinear(picture, np.array([[0.25, 0.5], [0.5, 0.5], [1.0, 0.5]])).ravel()
         array([ 0.,  5., 10.], dtype=float32)

@@ -52,7 +52,7 @@ def compute_chart_angles(
         the top down, in radians.
 
     Example:
-        >>> from skinnet.shape import compute_chart_angles
+        >>> from skinnet.shape._procedural_head import compute_chart_angles
         >>> azimuth, elevation = compute_chart_angles(3, 5)
         >>> azimuth
         tensor([[-2., -1.,  0.,  1.,  2.]])
@@ -77,7 +77,7 @@ def compute_head_radius(
 
     Example:
         >>> import torch
-        >>> from skinnet.shape import compute_head_radius
+        >>> from skinnet.shape._procedural_head import compute_head_radius
         >>> radius = compute_head_radius(torch.zeros(1, 43), 61, 81)
         >>> round(radius.max().item(), 2)  # the tip of the nose
         1.17
