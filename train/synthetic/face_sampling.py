@@ -19,6 +19,7 @@ from train.synthetic.scene import (
     SkinParameters,
     SpecularParameters,
 )
+from train.synthetic.variety import Variety
 
 MELANIN_RANGE = (0.015, 0.25)
 """Base fraction of melanin, uniform in its logarithm.
@@ -47,13 +48,16 @@ def make_tensors(**values: ArrayLike) -> dict[str, Tensor]:
     return {name: torch.from_numpy(np.asarray(value)) for name, value in values.items()}
 
 
-def sample_face(rng: np.random.Generator, domain_randomised: bool = False) -> FaceParameters:
+def sample_face(
+    rng: np.random.Generator, domain_randomised: bool = False, variety: Variety = "mild"
+) -> FaceParameters:
     """Sample all that is painted on a head, without a skin of a hybrid model.
 
     Args:
         rng: Random numbers.
         domain_randomised: Whether to sample melanin from `RANDOMISED_MELANIN_RANGE`, for training
             alone.
+        variety: Which kind of faces.
 
     Returns:
         Parameters in the precision that they were sampled in, most of them in float64.

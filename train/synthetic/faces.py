@@ -20,6 +20,7 @@ from train.synthetic.model_skins import ModelSkins, apply_model_skin, load_model
 from train.synthetic.renderer import render
 from train.synthetic.scene import HeadBuffers, SceneParameters, map_tensors
 from train.synthetic.scene_sampling import sample_scene
+from train.synthetic.variety import Variety
 
 STAGES = {"fit": ("train", "val"), "validate": ("val",), "test": ("test",)}
 """Splits whose heads a stage of training needs."""
@@ -41,6 +42,7 @@ class SyntheticScenes(Dataset[SceneParameters]):
         domain_randomised: As in `sample_scene`; for training alone.
         measured: Blood and nuisance of measured skins; None: blood is uniform in its logarithm, and
             all skins are those of the preset.
+        variety: Which kind of faces; the heads must be of the same.
     """
 
     def __init__(
@@ -52,7 +54,9 @@ class SyntheticScenes(Dataset[SceneParameters]):
         skins: ModelSkins | None = None,
         domain_randomised: bool = False,
         measured: MeasuredSkins | None = None,
+        variety: Variety = "mild",
     ) -> None:
+        self.variety = variety
         self.heads, self.samples, self.skins = heads, samples, skins
         self.measured = measured
         self.domain_randomised = domain_randomised
@@ -65,7 +69,7 @@ class SyntheticScenes(Dataset[SceneParameters]):
         number = index % len(self.heads.label)
         head = map_tensors(lambda values: values[number], self.heads)
         rng = np.random.default_rng([*self.key, index])
-        scene = sample_scene(rng, head, self.domain_randomised)
+        scene = sample_scene(rng, head, self.domain_randomised, self.variety)
         face = scene.face
         if self.measured is not None:
             face = self.measured.apply(face, np.random.default_rng([*self.key, index, 2]))
@@ -101,6 +105,8 @@ class SyntheticFaces(LightningDataModule):
             `measured`, each face has the blood and the nuisance of a skin of `SkinPrior`.
         seed: Seed of everything that is sampled.
         workers: Processes that cast heads and sample scenes; 0 does both in the training process.
+        variety: `mild` for one nearly upright face a picture, or `any` for faces and skin as people
+            photograph them.
     """
 
     def __init__(
@@ -119,6 +125,7 @@ class SyntheticFaces(LightningDataModule):
         optics: str = "measured",
         seed: NonNegativeInt = 0,
         workers: NonNegativeInt = 0,
+        variety: Variety = "mild",
     ) -> None:
         super().__init__()
         self.size, self.batch_size = size, batch_size
@@ -126,6 +133,7 @@ class SyntheticFaces(LightningDataModule):
         self.samples = {"train": train_samples, "val": val_samples, "test": test_samples}
         self.ict = None if ict is None else Path(ict)
         self.geometry, self.seed, self.workers = Path(geometry), seed, workers
+        self.variety: Variety = variety
         self.skins_file = None if skins is None else Path(skins)
         self.skins: ModelSkins | None = None
         self.optics = optics
@@ -172,7 +180,7 @@ class SyntheticFaces(LightningDataModule):
     def _load_heads(self, split: str) -> HeadCast:
         count, workers = self.heads[split], max(self.workers, 1)
         return load_or_cast_heads(
-            self.geometry, self.size, count, split, self.seed, self.ict, workers
+            self.geometry, self.size, count, split, self.seed, self.ict, workers, self.variety
         )
 
     def train_dataloader(self) -> StreamLoader:
@@ -183,7 +191,14 @@ class SyntheticFaces(LightningDataModule):
         """Load training scenes in epochs of that many steps, from the step of the trainer on."""
         samples = max(steps, 1) * self.batch_size
         scenes = SyntheticScenes(
-            self.buffers["train"], "train", samples, self.seed, self.skins, True, self.measured
+            self.buffers["train"],
+            "train",
+            samples,
+            self.seed,
+            self.skins,
+            True,
+            self.measured,
+            self.variety,
         )
         seen = partial(count_seen_samples, trainer, self.batch_size)
         return StreamLoader(scenes, self.batch_size, samples, seen, self.workers)
@@ -213,5 +228,6 @@ class SyntheticFaces(LightningDataModule):
             self.seed,
             self.skins,
             measured=self.measured,
+            variety=self.variety,
         )
         return DataLoader(scenes, self.batch_size, num_workers=self.workers)

@@ -16,9 +16,13 @@ from skinnet.files import make_folder, write_atomically
 from train.synthetic.head_cast import HeadCast, cast_head
 from train.synthetic.heads import make_ict_head, make_procedural_head
 from train.synthetic.ict_model import IctModel, read_ict_model
+from train.synthetic.variety import Variety
 
 VERSION = 1
-"""Raise it with every change to heads or their casts; older files are then not used."""
+"""Raise it with every change to mild heads or their casts; older files are then not used."""
+
+ANY_VERSION = 1
+"""The same for the variety `any`."""
 
 SPLITS = {"train": 0, "val": 1, "test": 2}
 _ICT_SHARE = 0.7
@@ -56,6 +60,7 @@ def load_or_cast_heads(
     seed: int,
     ict: Path | None = None,
     workers: int = 1,
+    variety: Variety = "mild",
 ) -> HeadCast:
     """Load the casts of heads, and cast those that are missing.
 
@@ -69,6 +74,7 @@ def load_or_cast_heads(
         seed: Seed of the heads.
         ict: File of ICT-FaceKit, of which most heads are then made; all others are procedural.
         workers: Processes that cast heads.
+        variety: Which kind of faces.
 
     Returns:
         The casts, stacked.
@@ -76,13 +82,13 @@ def load_or_cast_heads(
     Raises:
         InputError: If the folder cannot be made, or `ict` cannot be read.
     """
-    settings = CastSettings(size, seed, "procedural" if ict is None else _identify(ict), VERSION)
+    settings = _describe(size, seed, ict, variety)
     place = make_folder(folder / settings.folder, "give another folder for the geometry")
     stack = _make_empty_stack(count, size)
     missing = [
         i for i in range(count) if not _load(stack, i, _name_file(place, split, i), settings)
     ]
-    jobs = [(place, settings, split, index, ict) for index in missing]
+    jobs = [(place, settings, split, index, ict, variety) for index in missing]
     if jobs and ict is None:
         _report("Without the file of ICT-FaceKit all heads are procedural.\n")
     for done, index in enumerate(_run(jobs, workers), 1):
@@ -92,7 +98,14 @@ def load_or_cast_heads(
     return stack
 
 
-_Job = tuple[Path, CastSettings, str, int, Path | None]
+def _describe(size: int, seed: int, ict: Path | None, variety: Variety) -> CastSettings:
+    kind = "procedural" if ict is None else _identify(ict)
+    if variety == "mild":
+        return CastSettings(size, seed, kind, VERSION)
+    return CastSettings(size, seed, f"{variety}-{kind}", ANY_VERSION)
+
+
+_Job = tuple[Path, CastSettings, str, int, Path | None, Variety]
 
 
 def _run(jobs: list[_Job], workers: int) -> Iterator[int]:
@@ -105,12 +118,12 @@ def _run(jobs: list[_Job], workers: int) -> Iterator[int]:
 
 
 def _cast(job: _Job) -> int:
-    place, settings, split, index, ict = job
+    place, settings, split, index, ict, variety = job
     rng = np.random.default_rng([settings.seed, SPLITS[split], index])
     if ict is not None and rng.random() < _ICT_SHARE:
-        head = make_ict_head(_read_model(ict), rng)
+        head = make_ict_head(_read_model(ict), rng, variety)
     else:
-        head = make_procedural_head(rng)
+        head = make_procedural_head(rng, variety)
     _write(_name_file(place, split, index), cast_head(head, rng, settings.size), settings)
     return index
 

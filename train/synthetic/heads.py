@@ -11,28 +11,34 @@ from train.synthetic.hair import make_cap, make_long_hair, sample_haircut
 from train.synthetic.ict_model import IctModel
 from train.synthetic.labelled_mesh import LabelledMesh, join, mirror, select
 from train.synthetic.labels import EYE, SKIN
+from train.synthetic.variety import Variety
 
 
-def make_procedural_head(rng: np.random.Generator) -> LabelledMesh:
+def make_procedural_head(rng: np.random.Generator, variety: Variety = "mild") -> LabelledMesh:
     """Make a whole head of `skinnet.shape._procedural_head`."""
-    return complete_head(*make_bald_procedural(rng), rng)
+    return complete_head(*make_bald_procedural(rng), rng, variety)
 
 
-def make_ict_head(model: IctModel, rng: np.random.Generator) -> LabelledMesh:
+def make_ict_head(
+    model: IctModel, rng: np.random.Generator, variety: Variety = "mild"
+) -> LabelledMesh:
     """Make a whole head of ICT-FaceKit with an expression and a gaze; half are mirrored."""
     bald, neck = make_bald_ict(model, rng)
     if rng.random() < 0.5:
         bald, neck = mirror(bald), neck._replace(x=-neck.x)
-    return complete_head(bald, neck, rng)
+    return complete_head(bald, neck, rng, variety)
 
 
-def complete_head(bald: LabelledMesh, neck: Neck, rng: np.random.Generator) -> LabelledMesh:
+def complete_head(
+    bald: LabelledMesh, neck: Neck, rng: np.random.Generator, variety: Variety = "mild"
+) -> LabelledMesh:
     """Put hair and shoulders on a bald head, and glasses on one in seven.
 
     Args:
         bald: Skin, eyes and mouth.
         neck: Where its neck ends.
         rng: Random numbers.
+        variety: Which kind of faces.
 
     Returns:
         The whole head.

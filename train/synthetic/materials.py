@@ -6,7 +6,7 @@ from jaxtyping import Float
 from torch import Tensor
 
 from train.synthetic.face_painting import resize_to_chart
-from train.synthetic.labels import CLOTH, EYE, GLASSES, HAIR, MOUTH, SKIN, TEETH
+from train.synthetic.labels import CLOTH, EYE, GLASSES, HAIR, MATERIALS, MOUTH, SKIN, TEETH
 from train.synthetic.scene import (
     FeatureParameters,
     HairParameters,
@@ -15,7 +15,7 @@ from train.synthetic.scene import (
 )
 from train.synthetic.tensors import expand_colour, expand_scalar, soft_step
 
-OIL = torch.zeros(8)
+OIL = torch.zeros(MATERIALS)
 """Oil of each label except skin: a factor on its specular reflection, 1 for oily skin."""
 OIL[EYE], OIL[TEETH], OIL[MOUTH], OIL[GLASSES], OIL[HAIR] = 1.5, 1.0, 0.5, 1.5, 0.3
 

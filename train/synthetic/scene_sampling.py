@@ -16,6 +16,7 @@ from train.synthetic.scene import (
     SurroundingsParameters,
     map_tensors,
 )
+from train.synthetic.variety import Variety
 
 WHITE_BALANCE_SD = 0.03
 """Standard deviation of the log error of a camera's gains of red and of blue."""
@@ -25,7 +26,10 @@ RANDOMISED_OIL = 0.35
 
 
 def sample_scene(
-    rng: np.random.Generator, head: HeadBuffers, domain_randomised: bool = False
+    rng: np.random.Generator,
+    head: HeadBuffers,
+    domain_randomised: bool = False,
+    variety: Variety = "mild",
 ) -> SceneParameters:
     """Sample all that is needed for one picture of a head.
 
@@ -35,11 +39,12 @@ def sample_scene(
         domain_randomised: Whether to widen the range of skin for training: melanin up to a fraction
             of .33 instead of .25, and oil times the exponential of an exponential variate of mean
             .35.
+        variety: Which kind of faces.
 
     Returns:
         Parameters in float32.
     """
-    face = sample_face(rng, domain_randomised)
+    face = sample_face(rng, domain_randomised, variety)
     surroundings, light = _sample_surroundings(rng), sample_light(rng)
     camera = sample_camera(rng, head.label.shape[-1])
     if domain_randomised:

@@ -28,7 +28,7 @@ def cast_numbers(monkeypatch: pytest.MonkeyPatch) -> list[int]:
         return cast(job)
 
     monkeypatch.setattr(head_cache, "_cast", count)
-    monkeypatch.setattr(head_cache, "make_procedural_head", lambda rng: head)
+    monkeypatch.setattr(head_cache, "make_procedural_head", lambda rng, variety: head)
     return numbers
 
 

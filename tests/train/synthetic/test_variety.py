@@ -1,0 +1,34 @@
+"""The mild faces are those of earlier versions, and the two varieties share no file."""
+
+from pathlib import Path
+
+import pytest
+
+from train.synthetic import head_cache
+from train.synthetic.faces import SyntheticFaces
+
+KNOWN = {
+    "val": (6970, 236320, 479772, 5905.27880859375),
+    "test": (8608, 210194, 470162, 7364.09423828125),
+}
+"""Sums of labels, normals, sky visibility and photographs before there was another variety."""
+
+
+@pytest.mark.parametrize("split", ["val", "test"])
+def test_mild_sets_are_those_of_earlier_versions(tmp_path: Path, split: str) -> None:
+    data = SyntheticFaces(
+        32, val_heads=2, test_heads=2, val_samples=4, test_samples=4, geometry=str(tmp_path)
+    )
+    assert data.variety == "mild"
+    data.setup({"val": "validate", "test": "test"}[split])
+    (scenes,) = data.val_dataloader() if split == "val" else data.test_dataloader()
+    head = scenes.head
+    sums = [int(one.long().sum()) for one in (head.label, head.normal, head.sky_visibility)]
+    photographs = data.render(scenes, split).photograph
+    assert (*sums, photographs.sum().item()) == pytest.approx(KNOWN[split], abs=1e-3)
+
+
+def test_varieties_have_folders_of_their_own() -> None:
+    mild, varied = (head_cache._describe(160, 0, None, one) for one in ("mild", "any"))
+    assert mild.folder == "v1-160px-seed0-procedural"
+    assert varied.folder == f"v{head_cache.ANY_VERSION}-160px-seed0-any-procedural"
