@@ -4,10 +4,11 @@ import numpy as np
 from jaxtyping import Float
 
 from train.synthetic.body import Neck
-from train.synthetic.expression import sample_expression
+from train.synthetic.expression import sample_any_expression, sample_expression
 from train.synthetic.ict_model import EYEBALLS, FIRST_INNER_VERTEX, IctModel
 from train.synthetic.labelled_mesh import LabelledMesh, clip, join, label_mesh
 from train.synthetic.labels import EYE, MOUTH, SKIN, TEETH
+from train.synthetic.variety import Variety
 
 _IRIS_ANGLE = 0.395
 """Radians between the gaze and the edge of the iris: 5.9 mm on a ball of 15.3 mm."""
@@ -15,19 +16,23 @@ _IRIS_ANGLE = 0.395
 _NECK_HEIGHT = -1.5
 
 
-def make_bald_ict(model: IctModel, rng: np.random.Generator) -> tuple[LabelledMesh, Neck]:
-    """Make a bald head of a random person with a mild expression.
+def make_bald_ict(
+    model: IctModel, rng: np.random.Generator, variety: Variety = "mild"
+) -> tuple[LabelledMesh, Neck]:
+    """Make a bald head of a random person with an expression.
 
     Args:
         model: ICT-FaceKit's.
         rng: Random numbers.
+        variety: Which kind of expressions.
 
     Returns:
         The head, and where its neck ends.
     """
     person = 0.9 * rng.normal(0, 1, len(model.identities)).clip(-2.5, 2.5)
     gaze = rng.normal(0, (0.10, 0.06)).clip(-0.2, 0.2)
-    weights = sample_expression(model.names, gaze, rng)
+    sample = sample_expression if variety == "mild" else sample_any_expression
+    weights = sample(model.names, gaze, rng)
     shape = model.mean + np.tensordot(person.astype(np.float32), model.identities, 1)
     active = np.flatnonzero(weights)
     moved = np.tensordot(weights[active].astype(np.float32), model.expressions[active], 1)

@@ -6,8 +6,10 @@ from jaxtyping import Float
 
 from skinnet.shape._procedural_head import CHART_EXTENT, IDENTITY_SIZE, compute_head_radius
 from train.synthetic.body import Neck
+from train.synthetic.expression import OPEN_MOUTH_SHARE
 from train.synthetic.labelled_mesh import LabelledMesh, clip, join, label_mesh, triangulate_grid
 from train.synthetic.labels import EYE, SKIN, TEETH
+from train.synthetic.variety import Variety
 
 _ROWS, _COLUMNS, _BACK = 168, 204, 24
 _EYE_PLACE, _EYE_HALF_WIDTH, _IRIS_RADIUS = (0.34, 0.02), 0.135, 0.055
@@ -16,14 +18,23 @@ _MOUTH_ELEVATION, _MOUTH_HALF_WIDTH = -0.66, 0.19
 _LID, _LIP = 0.016, 0.03
 """Depth of eyes and teeth behind eyelids and lips, in half heads."""
 
+_SMILES: dict[Variety, tuple[float, float] | None] = {
+    "mild": None, "any": (1 - OPEN_MOUTH_SHARE, OPEN_MOUTH_SHARE),
+}  # fmt: skip
+"""Probabilities of closed mouths and of smiles. None is half of each, and does not change the
+random numbers of earlier versions."""
+
 _Grid = Float[np.ndarray, "rows columns"]
 
 
-def make_bald_procedural(rng: np.random.Generator) -> tuple[LabelledMesh, Neck]:
+def make_bald_procedural(
+    rng: np.random.Generator, variety: Variety = "mild"
+) -> tuple[LabelledMesh, Neck]:
     """Make a bald head, its eyes open and its mouth closed or smiling.
 
     Args:
         rng: Random numbers.
+        variety: `mild` lets half of them smile, `any` a share `OPEN_MOUTH_SHARE`.
 
     Returns:
         The head, and where its neck ends.
@@ -32,7 +43,7 @@ def make_bald_procedural(rng: np.random.Generator) -> tuple[LabelledMesh, Neck]:
     radius = compute_head_radius(torch.from_numpy(identity[None]), _ROWS, _COLUMNS)[0, 0].numpy()
     azimuth, elevation, radius = _extend_to_back(radius)
     eyes = _measure_eyes(azimuth, elevation, rng.uniform(0.03, 0.06))
-    smile = rng.choice([0.0, rng.uniform(0.02, 0.075)])
+    smile = rng.choice([0.0, rng.uniform(0.02, 0.075)], p=_SMILES[variety])
     mouth = _measure_mouth(azimuth, elevation, smile) if smile else np.full_like(radius, -1.0)
     radius = radius - _LID * _step_smoothly(eyes) - _LIP * _step_smoothly(mouth)
     head = _make_skin(azimuth, elevation, radius)

@@ -33,12 +33,13 @@ class _Torso(NamedTuple):
     edge: float
 
 
-def make_bust(neck: Neck, rng: np.random.Generator) -> LabelledMesh:
+def make_bust(neck: Neck, rng: np.random.Generator, closed: bool = False) -> LabelledMesh:
     """Make a chest with skin, and clothes on it that are open at the collar.
 
     Args:
         neck: Where the neck ends.
         rng: Random numbers.
+        closed: Whether the clothes end at the neck all around, as under a roll-neck.
 
     Returns:
         Chest and clothes.
@@ -51,7 +52,8 @@ def make_bust(neck: Neck, rng: np.random.Generator) -> LabelledMesh:
         rng.uniform(1.9, 2.6),
     )
     azimuth = np.linspace(-np.pi, np.pi, _AZIMUTHS)
-    return join([_make_chest(neck, torso, azimuth), _make_clothes(neck, torso, azimuth, rng)])
+    clothes = _make_clothes(neck, torso, azimuth, rng, closed)
+    return join([_make_chest(neck, torso, azimuth), clothes])
 
 
 def _make_chest(neck: Neck, torso: _Torso, azimuth: Float[np.ndarray, "azimuths"]) -> LabelledMesh:
@@ -65,9 +67,13 @@ def _make_chest(neck: Neck, torso: _Torso, azimuth: Float[np.ndarray, "azimuths"
 
 
 def _make_clothes(
-    neck: Neck, torso: _Torso, azimuth: Float[np.ndarray, "azimuths"], rng: np.random.Generator
+    neck: Neck,
+    torso: _Torso,
+    azimuth: Float[np.ndarray, "azimuths"],
+    rng: np.random.Generator,
+    closed: bool,
 ) -> LabelledMesh:
-    width, depth = rng.uniform(0.5, 1.1), rng.uniform(0.0, 0.55)
+    width, depth = rng.uniform(0.5, 1.1), rng.uniform(0.0, 0.55) * (not closed)
     front = np.abs(azimuth) / width
     pointed, round_ = (1 - front).clip(0), np.exp(-(front**2) * 1.5)
     collar = rng.uniform(0.04, 0.2) + depth * (pointed if rng.random() < 0.5 else round_)

@@ -1,5 +1,7 @@
 """Frames of glasses for synthetic heads."""
 
+from typing import NamedTuple
+
 import numpy as np
 from jaxtyping import Float
 
@@ -17,6 +19,15 @@ _AROUND = 9
 _Line = Float[np.ndarray, "points 3"]
 
 
+class Frame(NamedTuple):
+    """Half axes of a rim, exponent of its outline, and radius of the wire, in half heads."""
+
+    half_width: float
+    half_height: float
+    power: float
+    radius: float
+
+
 def make_glasses(
     skin: LabelledMesh, eyes: Float[np.ndarray, "2 3"], rng: np.random.Generator
 ) -> LabelledMesh:
@@ -30,22 +41,33 @@ def make_glasses(
     Returns:
         The frame.
     """
-    half_width, half_height = rng.uniform(0.2, 0.26), rng.uniform(0.13, 0.2)
-    power, radius = rng.uniform(2.0, 4.0), rng.uniform(0.008, 0.024)
-    half_width = min(half_width, np.abs(eyes[:, 0]).mean() - 0.055)
+    half_axes = rng.uniform(0.2, 0.26), rng.uniform(0.13, 0.2)
+    frame = Frame(*half_axes, rng.uniform(2.0, 4.0), rng.uniform(0.008, 0.024))
+    return make_frame(skin, place_rim(skin, eyes, frame), frame)
+
+
+def place_rim(skin: LabelledMesh, eyes: Float[np.ndarray, "2 3"], frame: Frame) -> _Line:
+    """Place the rim of the left eye in front of brows and cheeks."""
+    half_width = min(frame.half_width, np.abs(eyes[:, 0]).mean() - 0.055)
     middle = np.abs(eyes).mean(0) * [1, 0, 0] + [0.015, eyes[:, 1].mean() - 0.02, 0]
-    rim = middle + _trace_rim(half_width, half_height, power)
-    front = _find_front(skin, rim)
-    rim[:, 2] = front - _bend_back(rim[:, 0])
+    rim = middle + _trace_rim(half_width, frame.half_height, frame.power)
+    rim[:, 2] = _find_front(skin, rim) - _bend_back(rim[:, 0])
+    return np.asarray(rim)
+
+
+def make_frame(skin: LabelledMesh, rim: _Line, frame: Frame) -> LabelledMesh:
+    """Make rims, bridge and temples, given the rim of the left eye."""
+    height, radius = frame.half_height, frame.radius
+    middle = (rim[:, 1].min() + rim[:, 1].max()) / 2
     inner, outer = rim[rim[:, 0].argmin()], rim[rim[:, 0].argmax()]
     lines = [
         (rim, radius),
-        (_trace_temple(skin, outer, middle[1] + 0.4 * half_height), 0.8 * radius),
+        (_trace_temple(skin, outer, middle + 0.4 * height), 0.8 * radius),
     ]
     both = [
-        _make_wire(line * side, wire) for line, wire in lines for side in ([1, 1, 1], [-1, 1, 1])
+        make_wire(line * side, wire) for line, wire in lines for side in ([1, 1, 1], [-1, 1, 1])
     ]
-    return join([*both, _make_wire(_trace_bridge(skin, inner, 0.3 * half_height), radius)])
+    return join([*both, make_wire(_trace_bridge(skin, inner, 0.3 * height), radius)])
 
 
 def _trace_rim(half_width: float, half_height: float, power: float) -> _Line:
@@ -89,7 +111,7 @@ def _trace_temple(skin: LabelledMesh, outer: Float[np.ndarray, "3"], height: flo
     )
 
 
-def _make_wire(line: _Line, radius: float) -> LabelledMesh:
+def make_wire(line: _Line, radius: float, label: int = GLASSES) -> LabelledMesh:
     """Make a round wire along a line."""
     along = np.gradient(line, axis=0)
     along = along / np.linalg.norm(along, axis=1, keepdims=True).clip(1e-9)
@@ -101,5 +123,5 @@ def _make_wire(line: _Line, radius: float) -> LabelledMesh:
     points = line + radius * (np.cos(angle) * right + np.sin(angle) * up)
     count = _AROUND * len(line)
     return label_mesh(
-        points.reshape(-1, 3), triangulate_grid(_AROUND, len(line)), GLASSES, np.zeros((count, 2))
+        points.reshape(-1, 3), triangulate_grid(_AROUND, len(line)), label, np.zeros((count, 2))
     )

@@ -1,8 +1,8 @@
 """Whole synthetic heads: bald ones, completed by hair, glasses and shoulders."""
 
 import numpy as np
-from jaxtyping import Float
 
+from train.synthetic._dressing import dress_head, find_eyes
 from train.synthetic.bald_ict import make_bald_ict
 from train.synthetic.bald_procedural import make_bald_procedural
 from train.synthetic.body import Neck, make_bust
@@ -16,14 +16,14 @@ from train.synthetic.variety import Variety
 
 def make_procedural_head(rng: np.random.Generator, variety: Variety = "mild") -> LabelledMesh:
     """Make a whole head of `skinnet.shape._procedural_head`."""
-    return complete_head(*make_bald_procedural(rng), rng, variety)
+    return complete_head(*make_bald_procedural(rng, variety), rng, variety)
 
 
 def make_ict_head(
     model: IctModel, rng: np.random.Generator, variety: Variety = "mild"
 ) -> LabelledMesh:
     """Make a whole head of ICT-FaceKit with an expression and a gaze; half are mirrored."""
-    bald, neck = make_bald_ict(model, rng)
+    bald, neck = make_bald_ict(model, rng, variety)
     if rng.random() < 0.5:
         bald, neck = mirror(bald), neck._replace(x=-neck.x)
     return complete_head(bald, neck, rng, variety)
@@ -43,17 +43,12 @@ def complete_head(
     Returns:
         The whole head.
     """
+    if variety == "any":
+        return dress_head(bald, neck, rng)
     skin, cut = select(bald, SKIN), sample_haircut(rng)
     parts = [bald, make_bust(neck, rng), make_cap(skin, cut, rng)]
     if cut.length:
         parts.append(make_long_hair(skin, cut, rng))
     if rng.random() < 0.15:
-        parts.append(make_glasses(skin, _find_eyes(select(bald, EYE)), rng))
+        parts.append(make_glasses(skin, find_eyes(select(bald, EYE)), rng))
     return join(parts)
-
-
-def _find_eyes(eyes: LabelledMesh) -> Float[np.ndarray, "2 3"]:
-    """The foremost points of both eyes."""
-    sides = [eyes.vertices[sign * eyes.vertices[:, 0] > 0] for sign in (1, -1)]
-    return np.stack([(one.min(0) + one.max(0)) / 2 * [1, 1, 0] + [0, 0, one[:, 2].max()]
-                     for one in sides])  # fmt: skip

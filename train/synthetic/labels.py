@@ -3,6 +3,9 @@
 BACKGROUND, SKIN, EYE, TEETH, MOUTH, HAIR, GLASSES, CLOTH, NAIL = range(9)
 """MOUTH is all that is red and dark inside: gums, tongue, walls of the mouth, eye sockets."""
 
+LENS, BEARD, HEADWEAR, FACE_MASK, SCARF = range(9, 14)
+"""Lenses of sunglasses, long beards, and cloth with colours of its own; none of it is skin."""
+
 MATERIALS = 32
 """A label is one of the materials above plus 32 times the number of a painting, which is 0 for a
 single face. Faces of more people have the paintings 1 to 3. Hands and arms of person k, whose skin

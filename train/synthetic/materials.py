@@ -49,6 +49,8 @@ def colour_materials(
         GLASSES: expand_colour(features.glasses),
         CLOTH: _colour_clothes(scene.surroundings, place),
     }
+    for n in (9, 11, 12, 13):
+        materials[n] = place.new_tensor([0.3, 0.3, 0.5])[None, :, None, None]
     for number, value in materials.items():
         colour = torch.where(label == number, value, colour)
     return colour
