@@ -5,7 +5,7 @@ from typing import Any
 
 from lightning import Trainer
 from torch import distributed
-from torch.utils.data import DataLoader, Dataset
+from torch.utils.data import DataLoader, Dataset, default_collate
 from torch.utils.data.distributed import DistributedSampler
 
 from skinnet.errors import InputError
@@ -49,6 +49,7 @@ class StreamLoader(DataLoader[Any]):
         samples: Samples of an epoch, rounded down to whole steps.
         seen: As in `StreamSampler`.
         workers: Processes that load samples.
+        collate: Makes a batch of a list of samples.
     """
 
     def __init__(
@@ -58,11 +59,14 @@ class StreamLoader(DataLoader[Any]):
         samples: int,
         seen: Callable[[], int],
         workers: int = 0,
+        collate: Callable[[list[Any]], Any] = default_collate,
     ) -> None:
         replicas, rank = _get_processes()
         step = batch_size * replicas
         sampler = StreamSampler(max(samples // step, 1) * step, seen, replicas, rank)
-        super().__init__(dataset, batch_size, sampler=sampler, num_workers=workers)
+        super().__init__(
+            dataset, batch_size, sampler=sampler, num_workers=workers, collate_fn=collate
+        )
 
     def state_dict(self) -> dict[str, Any]:
         """Return an empty state."""

@@ -87,12 +87,12 @@ def _spread_pigments(
     skin, marks = face.skin, face.marks
     kept = 1 - (1 - _KEPT_STRUCTURE) * expand_scalar(skin.has_model_skin)
     log_melanin, log_hemoglobin = (
-        kept * _sum_structure(pigment, regions) + pigment.model_skin
+        kept * sum_structure(pigment, regions) + pigment.model_skin
         for pigment in (skin.melanin, skin.hemoglobin)
     )
     # Lips have neither freckles nor moles.
     outside = 1 - regions[4]
-    dark = (resize_to_chart(marks.freckles) + _spread_moles(marks)) * outside
+    dark = (resize_to_chart(marks.freckles) + paint_moles(marks)) * outside
     vessels = resize_to_chart(marks.vessels) * (regions[1] + regions[2])
     red = (resize_to_chart(marks.spots) + vessels) * outside
     melanin = expand_scalar(skin.melanin.fraction) * (log_melanin + dark).exp()
@@ -100,9 +100,10 @@ def _spread_pigments(
     return melanin.clamp(1e-4, F_MEL_MAX), hemoglobin.clamp(1e-4, F_BLOOD_MAX)
 
 
-def _sum_structure(
+def sum_structure(
     pigment: PigmentParameters, regions: Float[Tensor, "regions rows columns"]
 ) -> _Map:
+    """Sum the log factors of regions and of noise."""
     log = torch.einsum("br,rhw->bhw", pigment.regions, regions)[:, None]
     for octave in (pigment.coarse, pigment.middle, pigment.fine):
         log = log + resize_to_chart(octave)
@@ -116,7 +117,8 @@ def resize_to_chart(
     return F.interpolate(noise, CHART_SIZE, mode="bilinear")
 
 
-def _spread_moles(marks: MarkParameters) -> _Map:
+def paint_moles(marks: MarkParameters) -> _Map:
+    """Paint log factors of all moles on the chart."""
     azimuth, elevation = (axis.to(marks.moles.device) for axis in compute_chart_angles(*CHART_SIZE))
     centre, height, radius, factor = (part[..., None, None] for part in marks.moles.unbind(2))
     across = torch.exp(-(((azimuth - centre) / radius) ** 2) / 2)

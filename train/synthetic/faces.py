@@ -7,16 +7,19 @@ from typing import Any
 import numpy as np
 from jsonargparse.typing import NonNegativeInt, PositiveInt
 from lightning import LightningDataModule, Trainer
-from torch.utils.data import DataLoader, Dataset
+from torch.utils.data import DataLoader, Dataset, default_collate
 
 from skinnet.physics import SkinDecoder
 from train.batch import Batch
 from train.preset import check_preset
 from train.stream import StreamLoader, count_seen_samples
+from train.synthetic.body_sampling import sample_body
 from train.synthetic.head_cache import SPLITS, load_or_cast_heads
 from train.synthetic.head_cast import HeadCast
+from train.synthetic.labels import BODY, MATERIALS
 from train.synthetic.measured_skins import MeasuredSkins
 from train.synthetic.model_skins import ModelSkins, apply_model_skin, load_model_skins
+from train.synthetic.paintings import collate_scenes, stack
 from train.synthetic.renderer import render
 from train.synthetic.scene import HeadBuffers, SceneParameters, map_tensors
 from train.synthetic.scene_sampling import sample_scene
@@ -24,6 +27,9 @@ from train.synthetic.variety import Variety
 
 STAGES = {"fit": ("train", "val"), "validate": ("val",), "test": ("test",)}
 """Splits whose heads a stage of training needs."""
+
+COLLATE = {"mild": default_collate, "any": collate_scenes}
+"""How a variety's scenes become a batch."""
 
 
 class SyntheticScenes(Dataset[SceneParameters]):
@@ -68,14 +74,30 @@ class SyntheticScenes(Dataset[SceneParameters]):
     def __getitem__(self, index: int) -> SceneParameters:
         number = index % len(self.heads.label)
         head = map_tensors(lambda values: values[number], self.heads)
-        rng = np.random.default_rng([*self.key, index])
-        scene = sample_scene(rng, head, self.domain_randomised, self.variety)
+        if self.variety == "mild":
+            return self._sample(index, head)
+        numbers = np.unique(head.label.numpy() // MATERIALS).tolist()
+        people = {one % BODY: self._sample(index, head, one % BODY) for one in numbers}
+        paintings = [people[one % BODY] for one in numbers]
+        faces = [
+            sample_body(np.random.default_rng([*self.key, index, 3, one]), scene.face)
+            if one >= BODY
+            else scene.face
+            for one, scene in zip(numbers, paintings, strict=True)
+        ]
+        return paintings[0]._replace(
+            face=stack(faces), surroundings=stack([one.surroundings for one in paintings])
+        )
+
+    def _sample(self, index: int, head: HeadBuffers, person: int = 0) -> SceneParameters:
+        """Sample a scene with one of its people; all have the light and camera of the first."""
+        key = [*self.key, index] if person == 0 else [*self.key, index, 4, person]
+        scene = sample_scene(np.random.default_rng(key), head, self.domain_randomised, self.variety)
         face = scene.face
         if self.measured is not None:
-            face = self.measured.apply(face, np.random.default_rng([*self.key, index, 2]))
+            face = self.measured.apply(face, np.random.default_rng([*key, 2]))
         if self.skins is not None:
-            rng = np.random.default_rng([*self.key, index, 1])
-            face = apply_model_skin(face, rng, self.skins)
+            face = apply_model_skin(face, np.random.default_rng([*key, 1]), self.skins)
         return scene._replace(face=face)
 
 
@@ -201,7 +223,9 @@ class SyntheticFaces(LightningDataModule):
             self.variety,
         )
         seen = partial(count_seen_samples, trainer, self.batch_size)
-        return StreamLoader(scenes, self.batch_size, samples, seen, self.workers)
+        return StreamLoader(
+            scenes, self.batch_size, samples, seen, self.workers, COLLATE[self.variety]
+        )
 
     def val_dataloader(self) -> DataLoader[SceneParameters]:
         """Load the validation scenes."""
@@ -230,4 +254,6 @@ class SyntheticFaces(LightningDataModule):
             measured=self.measured,
             variety=self.variety,
         )
-        return DataLoader(scenes, self.batch_size, num_workers=self.workers)
+        return DataLoader(
+            scenes, self.batch_size, num_workers=self.workers, collate_fn=COLLATE[self.variety]
+        )

@@ -6,7 +6,7 @@ from jaxtyping import Float
 from torch import Tensor
 
 from train.synthetic.face_painting import resize_to_chart
-from train.synthetic.labels import CLOTH, EYE, GLASSES, HAIR, MATERIALS, MOUTH, SKIN, TEETH
+from train.synthetic.labels import CLOTH, EYE, GLASSES, HAIR, MATERIALS, MOUTH, NAIL, SKIN, TEETH
 from train.synthetic.scene import (
     FeatureParameters,
     HairParameters,
@@ -18,6 +18,7 @@ from train.synthetic.tensors import expand_colour, expand_scalar, soft_step
 OIL = torch.zeros(MATERIALS)
 """Oil of each label except skin: a factor on its specular reflection, 1 for oily skin."""
 OIL[EYE], OIL[TEETH], OIL[MOUTH], OIL[GLASSES], OIL[HAIR] = 1.5, 1.0, 0.5, 1.5, 0.3
+OIL[NAIL] = 1.2
 
 _Image = Float[Tensor, "batch 3 height width"]
 _Label = Float[Tensor, "batch 1 height width"]
@@ -30,7 +31,7 @@ def colour_materials(
     """Colour every pixel by its label.
 
     Args:
-        scene: A batch.
+        scene: A batch of paintings; head and camera are not used.
         label: Labels of `train.synthetic.labels`.
         place: Places on the labels' charts.
         cover_colour: Linear sRGB of what covers the skin.
@@ -48,6 +49,7 @@ def colour_materials(
         HAIR: _colour_hair(scene.face.hair, place),
         GLASSES: expand_colour(features.glasses),
         CLOTH: _colour_clothes(scene.surroundings, place),
+        NAIL: _colour_nails(features),
     }
     for n in (9, 11, 12, 13):
         materials[n] = place.new_tensor([0.3, 0.3, 0.5])[None, :, None, None]
@@ -74,6 +76,13 @@ def _colour_eye(features: FeatureParameters, place: _Place) -> _Image:
     colour = expand_colour(features.sclera) * (1 - inside) + iris * inside
     eye: _Image = colour * (1 - pupil) + 0.008 * pupil
     return eye
+
+
+def _colour_nails(features: FeatureParameters) -> Float[Tensor, "batch 3 1 1"]:
+    """Nails show their bed, or varnish if there is make-up."""
+    bed = features.lipstick.new_tensor([0.50, 0.29, 0.24])
+    varnished = features.make_up[:, None] > 0
+    return expand_colour(torch.where(varnished, features.lipstick, bed))
 
 
 def _colour_hair(hair: HairParameters, place: _Place) -> _Image:

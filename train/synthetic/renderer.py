@@ -4,17 +4,24 @@ from typing import NamedTuple
 
 import torch
 import torch.nn.functional as F
-from jaxtyping import Float, Int8, UInt8
+from jaxtyping import Float, Int8, Int64, UInt8
 from torch import Tensor
 
 from skinnet.network.autoencoder import SHADING_MAX, SkinMaps
 from skinnet.physics import Capture, SkinDecoder, luminance
 from skinnet.shape._procedural_head import CHART_EXTENT
 from train.batch import Batch
+from train.synthetic.body_painting import paint_body
 from train.synthetic.face_painting import FaceCharts, paint_face
-from train.synthetic.labels import SKIN
+from train.synthetic.labels import BODY, MATERIALS, SKIN
 from train.synthetic.materials import OIL, colour_materials
-from train.synthetic.scene import CameraParameters, SceneParameters
+from train.synthetic.paintings import Paintings, find_paintings, merge_paintings
+from train.synthetic.scene import (
+    CameraParameters,
+    FaceParameters,
+    SceneParameters,
+    map_tensors,
+)
 from train.synthetic.shading import Shading, shade
 from train.synthetic.simulated_camera import simulate_sensor, take_photograph
 from train.synthetic.tensors import expand_colour, expand_scalar, normalise
@@ -44,39 +51,100 @@ def render(scene: SceneParameters, decoder: SkinDecoder, split: str = "train") -
     shading is 0, and the true offset is the light itself, before lens and tone curve.
 
     Args:
-        scene: A batch of scenes.
+        scene: A batch of scenes, mild ones or those of `collate_scenes`.
         decoder: Computes the colours of skin.
         split: Train, val or test, each with its own cameras.
 
     Returns:
         Photographs, masks, true maps, captures and albedo.
     """
-    head = scene.head
-    label, place = head.label[:, None].float(), head.chart.movedim(-1, 1).float()
-    charts = _sample_charts(paint_face(scene.face), place)
-    skin = (label == SKIN).float()
-    share = skin * (1 - charts.cover)
-    normal = normalise(decode_normals(head.normal) + skin * F.pad(charts.bump, (0, 0, 0, 0, 0, 1)))
+    head, paintings = scene.head, find_paintings(scene.head.label)
+    matrix, capture = simulate_sensor(scene.light, scene.camera, decoder.camera, split)
+    surface = _paint(scene, paintings, decoder, matrix)
+    material = (head.label % MATERIALS)[:, None]
+    skin = (material == SKIN).float()
+    first = map_tensors(lambda value: value[paintings.first], scene.face.skin.specular)
     shading = shade(
         scene.light,
-        scene.face.skin.specular,
-        normal,
+        first,
+        normalise(decode_normals(head.normal) + skin * F.pad(surface.bump, (0, 0, 0, 0, 0, 1))),
         decode_sky_visibility(head.sky_visibility),
         head.visibility_mask,
-        torch.where(skin > 0, charts.oil, OIL.to(skin)[label.long()]),
+        torch.where(skin > 0, surface.oil, OIL.to(skin)[material.long()]),
     )
-    matrix, capture = simulate_sensor(scene.light, scene.camera, decoder.camera, split)
     white = expand_colour(matrix.sum(-2))
-    melanin, hemoglobin = charts.melanin[:, 0], charts.hemoglobin[:, 0]
-    other = colour_materials(scene, label, place, charts.cover_colour)
     # The wall has its own light.
-    other = other * torch.where(label > 0, shading.diffuse, 1.0)
-    other = (other + shading.specular * (label > 0)) * white
-    nuisance = scene.face.skin.nuisance
-    varied = any(bool(deviation.any()) for deviation in nuisance)
-    albedo = decoder.albedo(melanin, hemoglobin, matrix, nuisance if varied else None)
-    visible = VisibleSkin(melanin, hemoglobin, albedo, share, shading)
+    other = surface.other * torch.where(material > 0, shading.diffuse, 1.0)
+    other = (other + shading.specular * (material > 0)) * white
+    share = skin * (1 - surface.cover)
+    visible = VisibleSkin(
+        surface.melanin[:, 0], surface.hemoglobin[:, 0], surface.albedo, share, shading
+    )
     return develop(scene.camera, visible, (1 - share) * other, white, capture)
+
+
+class _Surface(NamedTuple):
+    """What is painted on the surfaces of a batch of pictures, without light.
+
+    `other` is the linear sRGB of all that is not skin, and `cover` its share on skin.
+    """
+
+    melanin: Map
+    hemoglobin: Map
+    albedo: Image
+    other: Image
+    cover: Map
+    oil: Map
+    bump: Float[Tensor, "batch 2 height width"]
+
+
+def _paint(
+    scene: SceneParameters,
+    paintings: Paintings,
+    decoder: SkinDecoder,
+    matrix: Float[Tensor, "batch wavelength 3"],
+) -> _Surface:
+    picture, skin = paintings.picture, scene.face.skin
+    label = (scene.head.label % MATERIALS)[picture, None].float()
+    place = scene.head.chart.movedim(-1, 1).float()[picture]
+    charts = _sample_charts(_paint_charts(scene.face, paintings.number), place)
+    varied = any(bool(deviation.any()) for deviation in skin.nuisance)
+    albedo = decoder.albedo(
+        charts.melanin[:, 0],
+        charts.hemoglobin[:, 0],
+        matrix[picture],
+        skin.nuisance if varied else None,
+    )
+    other = colour_materials(scene, label, place, charts.cover_colour)
+    # A picture has one amount of oil, that of its first painting.
+    oil = skin.specular.oil / skin.specular.oil[paintings.first][picture]
+    surface = _Surface(
+        charts.melanin,
+        charts.hemoglobin,
+        albedo,
+        other,
+        charts.cover,
+        charts.oil * expand_scalar(oil),
+        charts.bump,
+    )
+    if paintings.single:
+        return surface
+    merged = merge_paintings(paintings, torch.cat(surface, 1))
+    return _Surface(*merged.split([one.shape[1] for one in surface], 1))
+
+
+def _paint_charts(face: FaceParameters, number: Int64[Tensor, "paintings"]) -> FaceCharts:
+    """Paint faces, and bodies where the number says so."""
+    body = (number >= BODY).nonzero()[:, 0]
+    if not len(body):
+        return paint_face(face)
+    heads = (number < BODY).nonzero()[:, 0]
+    bodies = paint_body(map_tensors(lambda value: value[body], face))
+    if not len(heads):
+        return bodies
+    faces = paint_face(map_tensors(lambda value: value[heads], face))
+    back = torch.cat([heads, body]).argsort()
+    return FaceCharts(*(torch.cat(pair)[back] for pair in zip(faces, bodies, strict=True)))
 
 
 def develop(
