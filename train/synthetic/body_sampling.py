@@ -102,9 +102,9 @@ def _sample_beardless(rng: np.random.Generator) -> BeardParameters:
 def _draw_hairs(rng: np.random.Generator) -> Float[np.ndarray, "1 rows columns"]:
     """Short lines along the limb, none of them on fingers."""
     rows, columns = CHART_SIZE
-    count = int(2500 * rng.random() ** 2)
+    count = int(700 * rng.random() ** 2)
     start = rng.uniform((0.42 * rows, 0.15 * columns), (rows, 0.85 * columns), (count, 2))
-    along = rng.uniform(3, 8, (count, 1)) * rng.normal((1, 0.3), (0.2, 0.3), (count, 2))
+    along = rng.uniform(1.5, 5, (count, 1)) * rng.normal((1, 0.5), (0.3, 0.5), (count, 2))
     points = start + np.linspace(0, 1, 10)[:, None, None] * along
     row, column = points.round().astype(int).reshape(-1, 2).clip(0, (rows - 1, columns - 1)).T
     hairs = np.zeros((1, rows, columns))

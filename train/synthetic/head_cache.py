@@ -5,7 +5,7 @@ import json
 import sys
 from collections.abc import Iterator
 from dataclasses import asdict, dataclass
-from functools import cache
+from functools import cache, partial
 from multiprocessing import get_context
 from pathlib import Path
 from zipfile import BadZipFile
@@ -13,9 +13,11 @@ from zipfile import BadZipFile
 import numpy as np
 
 from skinnet.files import make_folder, write_atomically
+from train.synthetic.any_cast import cast_any
 from train.synthetic.head_cast import HeadCast, cast_head
 from train.synthetic.heads import make_ict_head, make_procedural_head
 from train.synthetic.ict_model import IctModel, read_ict_model
+from train.synthetic.labelled_mesh import LabelledMesh
 from train.synthetic.variety import Variety
 
 VERSION = 1
@@ -120,12 +122,20 @@ def _run(jobs: list[_Job], workers: int) -> Iterator[int]:
 def _cast(job: _Job) -> int:
     place, settings, split, index, ict, variety = job
     rng = np.random.default_rng([settings.seed, SPLITS[split], index])
-    if ict is not None and rng.random() < _ICT_SHARE:
-        head = make_ict_head(_read_model(ict), rng, variety)
-    else:
-        head = make_procedural_head(rng, variety)
-    _write(_name_file(place, split, index), cast_head(head, rng, settings.size), settings)
+    make_head = partial(_make_head, ict=ict, variety=variety)
+    cast = (
+        cast_head(make_head(rng), rng, settings.size)
+        if variety == "mild"
+        else cast_any(make_head, rng, settings.size)
+    )
+    _write(_name_file(place, split, index), cast, settings)
     return index
+
+
+def _make_head(rng: np.random.Generator, ict: Path | None, variety: Variety) -> LabelledMesh:
+    if ict is not None and rng.random() < _ICT_SHARE:
+        return make_ict_head(_read_model(ict), rng, variety)
+    return make_procedural_head(rng, variety)
 
 
 @cache
