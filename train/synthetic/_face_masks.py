@@ -58,7 +58,7 @@ def make_face_mask(surface: HeadSurface, rng: np.random.Generator) -> LabelledMe
     across, down = np.meshgrid(np.linspace(-1, 1, _COLUMNS), np.linspace(0, 1, _ROWS))
     azimuth, elevation = _place_cloth(outline, across, down)
     points = stretch(surface.place(azimuth, elevation), 0.02, 600)
-    points = move_out(points, _raise_cloth(kind, across, down, rng))
+    points = move_out(points, _raise_cloth(kind, across, down, rng).clip(-0.012))
     cloth = make_sheet(points, FACE_MASK, across, 1 - 2 * down)
     return join([cloth, *_make_loops(surface, points, azimuth, elevation)])
 

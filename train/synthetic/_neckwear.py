@@ -31,10 +31,10 @@ def make_roll_neck(neck: Neck, rng: np.random.Generator) -> LabelledMesh:
     top = rng.uniform(-1.1, -0.92) - 0.1 * np.cos(azimuth)
     rim = np.sin(np.pi * down.clip(0, 0.5)) ** 0.5
     ribs = 0.006 * np.cos(70 * azimuth) + 0.01 * sample_waves(rng, azimuth, down, (2, 5))
-    off = 0.02 + 0.05 * rim + ribs
+    off = 0.02 + 0.05 * rim + ribs - 0.25 * (down - 0.5).clip(0)
     x = neck.x + (neck.half_width + off) * np.sin(azimuth)
     z = neck.z + (neck.half_depth + off) * np.cos(azimuth)
-    y = top + (-1.6 - top) * down
+    y = top + (-1.5 - top) * down
     return make_sheet(np.stack([x, y, z], -1), SCARF, azimuth, y)
 
 

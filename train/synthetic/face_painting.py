@@ -10,6 +10,12 @@ from torch import Tensor
 
 from skinnet.network.autoencoder import F_BLOOD_MAX, F_MEL_MAX
 from skinnet.shape._procedural_head import compute_chart_angles
+from train.synthetic._style_painting import (
+    cover_with_style,
+    even_out,
+    has_style,
+    list_styled_layers,
+)
 from train.synthetic.facial_hair import (
     cover_with_beard,
     cover_with_brows,
@@ -68,11 +74,17 @@ def paint_face(face: FaceParameters) -> FaceCharts:
     regions = _evaluate_regions(device)
     melanin, hemoglobin = _spread_pigments(face, regions)
     colour, cover = torch.zeros_like(melanin).expand(-1, 3, -1, -1), torch.zeros_like(melanin)
-    for layer, opacity in _list_layers(face.hair, face.features, azimuth, elevation, regions):
+    layers = _list_layers(face.hair, face.features, azimuth, elevation, regions)
+    bump = skin.bump
+    oil = (0.8 + 0.7 * regions[2] + 0.5 * regions[0])[None, None].expand_as(cover)
+    if has_style(face):
+        beard = cover_with_style(face.beard_style, azimuth.abs(), elevation)
+        layers = list_styled_layers(face, layers, beard, azimuth, elevation)
+        bump, oil = bump * (1 + 3 * beard), oil * (1 - 0.7 * beard)
+    for layer, opacity in layers:
         colour = colour * (1 - opacity) + layer * opacity
         cover = cover + opacity - cover * opacity
-    oil = (0.8 + 0.7 * regions[2] + 0.5 * regions[0])[None, None].expand_as(cover)
-    return FaceCharts(melanin, hemoglobin, colour / cover.clamp_min(1e-3), cover, oil, skin.bump)
+    return FaceCharts(melanin, hemoglobin, colour / cover.clamp_min(1e-3), cover, oil, bump)
 
 
 @cache
@@ -90,6 +102,8 @@ def _spread_pigments(
         kept * sum_structure(pigment, regions) + pigment.model_skin
         for pigment in (skin.melanin, skin.hemoglobin)
     )
+    if has_style(face):
+        log_melanin, log_hemoglobin = even_out(face.cosmetics, log_melanin, log_hemoglobin)
     # Lips have neither freckles nor moles.
     outside = 1 - regions[4]
     dark = (resize_to_chart(marks.freckles) + paint_moles(marks)) * outside

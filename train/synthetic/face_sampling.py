@@ -7,6 +7,7 @@ from numpy.typing import ArrayLike
 from torch import Tensor
 
 from skinnet.physics import Nuisance
+from train.synthetic._style_sampling import add_style, make_no_style
 from train.synthetic.scene import (
     CHART_SIZE,
     MOLES,
@@ -65,7 +66,9 @@ def sample_face(
     limits = RANDOMISED_MELANIN_RANGE if domain_randomised else MELANIN_RANGE
     f_mel = float(np.exp(rng.uniform(*np.log(limits))))
     skin, marks = _sample_skin(rng, f_mel), _sample_marks(rng)
-    return FaceParameters(skin, marks, *_sample_features(rng, f_mel))
+    (hair, features), (beard, cosmetics, garments) = _sample_features(rng, f_mel), make_no_style()
+    face = FaceParameters(skin, marks, hair, features, beard, cosmetics, garments)
+    return face if variety == "mild" else add_style(face, rng)
 
 
 def _sample_skin(rng: np.random.Generator, f_mel: float) -> SkinParameters:

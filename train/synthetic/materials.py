@@ -5,8 +5,22 @@ import torch.nn.functional as F
 from jaxtyping import Float
 from torch import Tensor
 
+from train.synthetic._garment_colours import colour_garments
+from train.synthetic._style_painting import has_style
 from train.synthetic.face_painting import resize_to_chart
-from train.synthetic.labels import CLOTH, EYE, GLASSES, HAIR, MATERIALS, MOUTH, NAIL, SKIN, TEETH
+from train.synthetic.labels import (
+    BEARD,
+    CLOTH,
+    EYE,
+    GLASSES,
+    HAIR,
+    LENS,
+    MATERIALS,
+    MOUTH,
+    NAIL,
+    SKIN,
+    TEETH,
+)
 from train.synthetic.scene import (
     FeatureParameters,
     HairParameters,
@@ -18,7 +32,7 @@ from train.synthetic.tensors import expand_colour, expand_scalar, soft_step
 OIL = torch.zeros(MATERIALS)
 """Oil of each label except skin: a factor on its specular reflection, 1 for oily skin."""
 OIL[EYE], OIL[TEETH], OIL[MOUTH], OIL[GLASSES], OIL[HAIR] = 1.5, 1.0, 0.5, 1.5, 0.3
-OIL[NAIL] = 1.2
+OIL[NAIL], OIL[LENS], OIL[BEARD] = 1.2, 3.0, 0.3
 
 _Image = Float[Tensor, "batch 3 height width"]
 _Label = Float[Tensor, "batch 1 height width"]
@@ -26,7 +40,11 @@ _Place = Float[Tensor, "batch 2 height width"]
 
 
 def colour_materials(
-    scene: SceneParameters, label: _Label, place: _Place, cover_colour: _Image
+    scene: SceneParameters,
+    label: _Label,
+    place: _Place,
+    cover_colour: _Image,
+    own_skin: Float[Tensor, "batch 3 1 1"],
 ) -> _Image:
     """Colour every pixel by its label.
 
@@ -35,6 +53,7 @@ def colour_materials(
         label: Labels of `train.synthetic.labels`.
         place: Places on the labels' charts.
         cover_colour: Linear sRGB of what covers the skin.
+        own_skin: Linear sRGB of the wearer's skin under white light.
 
     Returns:
         Linear sRGB under white light; on skin it is `cover_colour`.
@@ -51,10 +70,10 @@ def colour_materials(
         CLOTH: _colour_clothes(scene.surroundings, place),
         NAIL: _colour_nails(features),
     }
-    for n in (9, 11, 12, 13):
-        materials[n] = place.new_tensor([0.3, 0.3, 0.5])[None, :, None, None]
     for number, value in materials.items():
         colour = torch.where(label == number, value, colour)
+    if has_style(scene.face):
+        colour_garments(colour, scene.face, label, place, own_skin)
     return colour
 
 

@@ -18,6 +18,8 @@ REGIONS = 6
 MOLES = 6
 LAMPS = 3
 MIXTURE = len(LIGHTS)
+GARMENTS = 3
+"""Cloth with colours of its own: headwear, face masks and scarves."""
 
 
 class HeadBuffers(NamedTuple):
@@ -123,13 +125,77 @@ class FeatureParameters(NamedTuple):
     lipstick: Float[Tensor, "*batch 3"]
 
 
+class BeardStyleParameters(NamedTuple):
+    """Beard and stubble of the variety `any`.
+
+    `parts` are the shares in [0, 1] of cheeks, chin, moustache and the bridge between them.
+    `cheek_line` is added to the height of the beard's upper edge in radians. `beard` and `stubble`
+    are opacities; stubble grows where a full beard would. `edge` and `hairs` are standard normal
+    noise: the one moves the edges, the other makes hairs.
+    """
+
+    parts: Float[Tensor, "*batch 4"]
+    cheek_line: Float[Tensor, "*batch"]
+    beard: Float[Tensor, "*batch"]
+    stubble: Float[Tensor, "*batch"]
+    colour: Float[Tensor, "*batch 3"]
+    edge: Float[Tensor, "*batch 1 edge_rows edge_columns"]
+    hairs: Float[Tensor, "*batch 1 hair_rows hair_columns"]
+
+
+class CosmeticParameters(NamedTuple):
+    """Make-up, face paint and a plaster of the variety `any`.
+
+    `foundation` is the share in [0, 1] of the pigments' structure that make-up evens out, and
+    `foundation_tone` the log factor on melanin that it seems to add. All other numbers are
+    opacities, and all colours are linear sRGB. `paint_noise` is standard normal: paint lies where
+    it is positive. `plaster` holds azimuth, elevation, angle, half length and half width in
+    radians.
+    """
+
+    foundation: Float[Tensor, "*batch"]
+    foundation_tone: Float[Tensor, "*batch"]
+    blush: Float[Tensor, "*batch"]
+    blush_colour: Float[Tensor, "*batch 3"]
+    eye_shadow: Float[Tensor, "*batch"]
+    eye_shadow_colour: Float[Tensor, "*batch 3"]
+    eyeliner: Float[Tensor, "*batch"]
+    paint: Float[Tensor, "*batch"]
+    paint_colour: Float[Tensor, "*batch 3"]
+    paint_noise: Float[Tensor, "*batch 1 rows columns"]
+    plaster: Float[Tensor, "*batch 5"]
+    plaster_opacity: Float[Tensor, "*batch"]
+    plaster_colour: Float[Tensor, "*batch 3"]
+
+
+class GarmentParameters(NamedTuple):
+    """Colours and patterns of headwear, face masks and scarves, and of dark lenses.
+
+    `colours` (linear sRGB) are two of each garment. Its pattern mixes them by two waves and by
+    noise: `waves` holds radians of phase over one unit of the chart and the phase, `amounts` the
+    weights of both waves and of noise. `own_skin` is 1 for cloth of the colour of the wearer's
+    skin. `mirror` in [0, 1] is how much a dark lens reflects.
+    """
+
+    colours: Float[Tensor, "*batch {GARMENTS} 2 3"]
+    waves: Float[Tensor, "*batch {GARMENTS} 2 3"]
+    amounts: Float[Tensor, "*batch {GARMENTS} 3"]
+    noise: Float[Tensor, "*batch {GARMENTS} rows columns"]
+    own_skin: Float[Tensor, "*batch {GARMENTS}"]
+    lens: Float[Tensor, "*batch 3"]
+    mirror: Float[Tensor, "*batch"]
+
+
 class FaceParameters(NamedTuple):
-    """All that is painted on a head."""
+    """All that is painted on a head. The last three records are 0 for the variety `mild`."""
 
     skin: SkinParameters
     marks: MarkParameters
     hair: HairParameters
     features: FeatureParameters
+    beard_style: BeardStyleParameters
+    cosmetics: CosmeticParameters
+    garments: GarmentParameters
 
 
 class SurroundingsParameters(NamedTuple):
