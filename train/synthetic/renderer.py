@@ -115,8 +115,9 @@ def _paint(
         matrix[picture],
         skin.nuisance if varied else None,
     )
-    base = (pigment.fraction[:, None, None] for pigment in (skin.melanin, skin.hemoglobin))
-    own_skin = decoder.albedo(*base, matrix[picture]) / expand_colour(matrix.sum(-2))[picture]
+    f_mel, f_blood = (one.fraction[:, None, None] for one in (skin.melanin, skin.hemoglobin))
+    own_skin = decoder.albedo(f_mel, f_blood, matrix[picture])
+    own_skin = own_skin / expand_colour(matrix.sum(-2))[picture]
     other = colour_materials(scene, label, place, charts.cover_colour, own_skin)
     # A picture has one amount of oil, that of its first painting.
     oil = skin.specular.oil / skin.specular.oil[paintings.first][picture]
