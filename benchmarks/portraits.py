@@ -21,7 +21,8 @@ from benchmarks.reader import Reader, compose, resize_maps
 from benchmarks.report import Results
 from benchmarks.running_statistics import RunningStatistics
 from benchmarks.typology import GROUPS, compute_typology_angle, find_group
-from skinnet.images import find_face, frame_head, read_photo, resize, segment_skin, srgb_to_linear
+from skinnet.images import find_faces, frame_head, read_photo, resize, segment_skin, srgb_to_linear
+from skinnet.images.faces.finder import choose_largest
 from skinnet.images.srgb import LUMINANCE_WEIGHTS
 from skinnet.network.autoencoder import SkinMaps
 from skinnet.physics import SkinDecoder
@@ -68,8 +69,9 @@ def read_portraits(paths: Sequence[Path]) -> Iterator[Portrait]:
 
 def crop_portrait(photo: NDArray[np.uint8]) -> Portrait | None:
     """Crop the face as `train.portraits` does, at `LARGEST` pixels; None without a face."""
-    if (face := find_face(photo)) is None:
+    if (found := choose_largest(find_faces(photo))) is None:
         return None
+    face = found.box
     box = frame_head(face, photo.shape[1], photo.shape[0])
     crop, mask = photo[box.slices], segment_skin(photo, face)[box.slices]
     # Without any skin, the colour of the whole crop, which is not used.

@@ -18,7 +18,7 @@ from torch.utils.data import DataLoader, Dataset
 from skinnet.errors import InputError
 from skinnet.files import write_text
 from skinnet.images import (
-    find_face,
+    find_faces,
     frame_head,
     linear_to_srgb,
     read_photo,
@@ -29,6 +29,7 @@ from skinnet.images import (
 )
 from skinnet.images._colour_content import find_tone
 from skinnet.images._walk import Found, Walk, walk
+from skinnet.images.faces.finder import choose_largest
 from train.batch import Batch
 from train.guards import list_names
 from train.stream import StreamLoader, count_seen_samples
@@ -314,7 +315,8 @@ def _crop_face(found: Found, size: int) -> Crop | Skipped:
         photo = read_photo(path)
     except InputError as error:
         return Skipped(path, str(error), readable=False)
-    face = find_face(photo)
+    largest = choose_largest(find_faces(photo))
+    face = None if largest is None else largest.box
     if face is None:
         return Skipped(path, "No face was found in it.", readable=True)
     box = frame_head(face, photo.shape[1], photo.shape[0])

@@ -1,7 +1,8 @@
 from .box import Box as Box
 from .colour_space import ColourSpace as ColourSpace
-from .faces import find_face as find_face
-from .faces import frame_head as frame_head
+from .faces.face import Face as Face
+from .faces.finder import find_faces as find_faces
+from .faces.framing import frame_head as frame_head
 from .photograph import read_photo as read_photo
 from .photograph import read_picture as read_picture
 from .picture import Picture as Picture
@@ -14,8 +15,9 @@ from .srgb import to_uint8 as to_uint8
 __all__ = [
     "Box",
     "ColourSpace",
+    "Face",
     "Picture",
-    "find_face",
+    "find_faces",
     "frame_head",
     "linear_to_srgb",
     "read_photo",

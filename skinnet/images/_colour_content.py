@@ -13,7 +13,8 @@ from numpy.typing import NDArray
 
 from skinnet.errors import InputError
 from skinnet.images.box import Box
-from skinnet.images.faces import find_face, frame_head
+from skinnet.images.faces.finder import choose_largest, find_faces
+from skinnet.images.faces.framing import frame_head
 from skinnet.images.skin_segmentation import SKIN_AREAS
 from skinnet.images.srgb import srgb_to_linear
 
@@ -72,6 +73,9 @@ _TINTS = (
 """Tints by the angle of (Cr, -Cb), in eighths of a turn."""
 
 
+_ALL_GREY = "it is grey"
+
+
 class _Cells(NamedTuple):
     """Means over the cells of a region."""
 
@@ -88,6 +92,13 @@ def check_colour(photo: NDArray[np.uint8], box: Box, face: Box | None, name: str
             f"There is no colour in {name}: {tone}. Melanin and hemoglobin cannot be read from it; "
             "give the colour photograph."
         )
+
+
+def refuse_grey(photo: NDArray[np.uint8], name: str) -> None:
+    """Raise `InputError` for a grey picture in which no face was found."""
+    whole = Box(0, 0, photo.shape[1], photo.shape[0])
+    if find_tone(photo, whole, None) == _ALL_GREY:
+        check_colour(photo, whole, None, name)
 
 
 def find_tone(photo: NDArray[np.uint8], box: Box, face: Box | None) -> str | None:
@@ -132,7 +143,7 @@ def _find_tone_anywhere(region: NDArray[np.uint8], cells: _Cells) -> str | None:
     """Find the tone of a whole picture. A face is searched for only where there is a doubt."""
     ratios = _log_ratios(srgb_to_linear(_divide(region)[0]).mean(1))
     if np.percentile(np.hypot(*ratios.T), 95) < _GREY:
-        return "it is grey"
+        return _ALL_GREY
     if len(ratios) < _CELLS**2 / 4:
         return None
     skin = np.median(ratios, 0)
@@ -140,7 +151,8 @@ def _find_tone_anywhere(region: NDArray[np.uint8], cells: _Cells) -> str | None:
     is_even = brightest - darkest < _EVEN and skin[0] > _LEAST_RED and skin[1] < _MOST_BLUE
     if is_even or _fit_tone(cells, skin, _HEAD, _CLEAR) is None:
         return None
-    face = find_face(region)
+    found = choose_largest(find_faces(region))
+    face = None if found is None else found.box
     if face is not None:
         return find_tone(region, frame_head(face, region.shape[1], region.shape[0]), face)
     if brightest - darkest < _SHADED and _has_colour_of_skin(skin):

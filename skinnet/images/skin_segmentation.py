@@ -7,7 +7,7 @@ from numpy.typing import NDArray
 from scipy import ndimage
 
 from skinnet.images.box import Box
-from skinnet.images.faces import frame_head
+from skinnet.images.faces.framing import frame_head
 from skinnet.images.resizing import resize
 from skinnet.images.srgb import LUMINANCE_WEIGHTS, srgb_to_linear
 
@@ -41,7 +41,7 @@ def segment_skin(photo: NDArray[np.uint8], face: Box) -> NDArray[np.float32]:
 
     Args:
         photo: uint8 sRGB [H, W, 3].
-        face: The face's box, from the brows to the chin, as `find_face` gives it.
+        face: The face's box, from the brows to the chin, as `find_faces` gives it.
 
     Returns:
         Probability of skin, float32 [H, W] in [0, 1].

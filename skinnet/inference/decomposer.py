@@ -12,9 +12,10 @@ from numpy.typing import NDArray
 from PIL import Image
 
 from skinnet.errors import InputError, NoFaceError
-from skinnet.images._colour_content import check_colour
+from skinnet.images._colour_content import check_colour, refuse_grey
 from skinnet.images.box import Box
-from skinnet.images.faces import find_face, frame_head
+from skinnet.images.faces.finder import choose_largest, find_faces
+from skinnet.images.faces.framing import frame_head
 from skinnet.images.photograph import read_picture
 from skinnet.images.picture import Picture
 from skinnet.images.resizing import resize
@@ -291,10 +292,12 @@ def _check_factors(**factors: float) -> None:
 
 def _choose_box(photo: NDArray[np.uint8], whole_image: bool, name: str) -> Box:
     height, width = photo.shape[:2]
-    face = None if whole_image else find_face(photo)
+    found = None if whole_image else choose_largest(find_faces(photo))
+    face = None if found is None else found.box
     if face is None and not whole_image:
+        refuse_grey(photo, name)
         raise NoFaceError(
-            f"No face was found in {name}; faces must be frontal and upright. --whole-image "
+            f"No face was found in {name}. --whole-image "
             "(in Python whole_image=True) decomposes it without a face."
         )
     box = Box(0, 0, width, height) if face is None else frame_head(face, width, height)

@@ -6,7 +6,7 @@ import numpy as np
 from jaxtyping import Float, UInt8
 
 from skinnet.errors import NoFaceError
-from skinnet.images.faces import find_face
+from skinnet.images.faces.finder import choose_largest, find_faces
 from skinnet.mesh.mesh import Mesh
 from skinnet.render.scene import Scene
 from skinnet.render.views import OrthographicView
@@ -65,12 +65,13 @@ def _locate_face(mesh: Mesh) -> tuple[Float[np.ndarray, "3"], float]:
     eye = np.array([*(low + high)[:2] / 2, high[2] + 1 / scale])
     view = OrthographicView((PIXELS, PIXELS), eye, np.eye(3), scale)
     buffers = trace_geometry(Scene(mesh), view)
-    box = find_face(_shade_plaster(buffers))
-    if box is None:
+    face = choose_largest(find_faces(_shade_plaster(buffers)))
+    if face is None:
         raise NoFaceError(
             f"No face was found on {mesh.name} from the front; rotate it upright, with the face "
             "towards +z, or give landmarks."
         )
+    box = face.box
     column, row = (box.left + box.right) / 2, (box.top + box.bottom) / 2
     width = box.width / scale
     middle = eye[:2] + np.array([column - PIXELS / 2, PIXELS / 2 - row]) / scale

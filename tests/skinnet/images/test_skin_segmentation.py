@@ -5,7 +5,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 from hypothesis.extra import numpy as hnp
 
-from skinnet.images import Box, find_face, read_photo, segment_skin
+from skinnet.images import Box, find_faces, read_photo, segment_skin
 
 FACE = Box(176, 71, 268, 163)
 
@@ -42,7 +42,7 @@ def test_masks_hold_the_cheeks_and_neither_eyes_nor_mouth(shared_data: Path) -> 
     cheeks, pupils_and_mouth = (165, 168), (0, 1, 101)
     for path in sorted((shared_data / "faces" / "london").glob("*.jpg"))[::9]:
         photo = read_photo(path)
-        face = find_face(photo)
+        face = find_faces(photo)[0].box
         assert face is not None, path.name
         mask = segment_skin(photo, face)
         landmarks = np.loadtxt(path.with_suffix(".tem"), skiprows=1, max_rows=189).astype(int)

@@ -1,0 +1,27 @@
+"""The networks that find faces, opened once."""
+
+from functools import cache
+from importlib.resources import as_file, files
+
+import numpy as np
+import onnxruntime
+from numpy.typing import NDArray
+
+
+@cache
+def open_face_model(name: str) -> onnxruntime.InferenceSession:
+    """Open `face_detector` or `face_mesh`."""
+    options = onnxruntime.SessionOptions()
+    options.log_severity_level = 4
+    # The networks are small: more threads win nothing, and wait busily.
+    options.intra_op_num_threads = 1
+    with as_file(files(__package__) / "models" / f"{name}.onnx") as path:
+        return onnxruntime.InferenceSession(path, options, providers=["CPUExecutionProvider"])
+
+
+def run_face_model(name: str, image: NDArray[np.float32]) -> dict[str, NDArray[np.float32]]:
+    """The outputs, by name, for an image [size, size, 3]."""
+    session = open_face_model(name)
+    names = [output.name for output in session.get_outputs()]
+    values = session.run(names, {session.get_inputs()[0].name: image[None]})
+    return dict(zip(names, values, strict=True))
