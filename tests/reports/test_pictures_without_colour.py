@@ -38,7 +38,7 @@ def test_a_grey_picture_of_any_mode_is_not_read(decomposer: Decomposer, mode: st
         image = grey.convert("RGB").convert("CMYK")
     else:
         image = grey.convert("LA").convert("La") if mode == "La" else grey.convert(mode)
-    with pytest.raises(InputError, match="There is no colour in the image: .* grey"):
+    with pytest.raises(InputError, match=r"There is no colour in the image: .* grey"):
         decomposer(image, detail=False)
 
 
