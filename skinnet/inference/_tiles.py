@@ -1,6 +1,5 @@
 """Tiles of a panel: pictures and maps with captions and scales, and grids of them."""
 
-import math
 from collections.abc import Sequence
 
 import numpy as np
@@ -9,6 +8,7 @@ from PIL import Image, ImageDraw, ImageFont
 
 from skinnet.images.resizing import resize
 from skinnet.images.srgb import to_uint8
+from skinnet.inference._colour_scales import PIGMENTS, Scale
 from skinnet.inference.decomposition import SKIN_THRESHOLD
 
 TILE = 300
@@ -17,26 +17,16 @@ TILE = 300
 BLANK = (232, 232, 234)
 """sRGB of pixels without a value."""
 
-_GAP, _CAPTION, _SCALE = 18, 30, 46
+_GAP, _CAPTION, _SCALE = 18, 30, 64
 """Space between tiles, and heights of a caption and a scale, in pixels."""
+
+_BAR, _TICK, _LABELS, _MEASURE = 6, 16, 20, 40
+"""Places of the bar, ticks, labels and measure of a scale, in pixels below the picture."""
 
 _INK, _PAPER, _OUTLINE = (38, 38, 40), (255, 255, 255), (150, 150, 152)
 
-MELANIN = ((255, 243, 224), (233, 190, 140), (168, 104, 58), (92, 50, 28), (28, 16, 12))
-
-HEMOGLOBIN = ((255, 255, 255), (255, 190, 180), (233, 80, 76), (160, 16, 34), (66, 2, 16))
-
-GREY = ((0, 0, 0), (255, 255, 255))
-
-SPECULAR = ((18, 20, 34), (60, 92, 150), (160, 200, 226), (255, 255, 255))
-
-_Anchors = Sequence[tuple[int, int, int]]
-"""Evenly spaced sRGB colours of a colour map."""
-
-_PIGMENTS: dict[str, tuple[str, _Anchors]] = {
-    "melanin": ("melanosome volume fraction", MELANIN),
-    "hemoglobin": ("blood volume fraction", HEMOGLOBIN),
-}
+_NOTED = 0.01
+"""A tile says which share of the skin lies above its scale if it is larger than this."""
 
 
 def draw_grid(tiles: Sequence[Image.Image], columns: int) -> NDArray[np.uint8]:
@@ -54,12 +44,16 @@ def draw_grid(tiles: Sequence[Image.Image], columns: int) -> NDArray[np.uint8]:
         >>> from skinnet.inference._tiles import draw_grid, draw_picture
         >>> tile = draw_picture("black", np.zeros((8, 8, 3), np.uint8))
         >>> draw_grid([tile] * 3, 2).shape
-        (806, 654, 3)
+        (714, 654, 3)
     """
-    grid = Image.new("RGB", _corner(columns, math.ceil(len(tiles) / columns)), _PAPER)
-    for index, tile in enumerate(tiles):
-        row, column = divmod(index, columns)
-        grid.paste(tile, _corner(column, row))
+    rows = [tiles[start : start + columns] for start in range(0, len(tiles), columns)]
+    height = sum(_find_height(row) for row in rows)
+    grid = Image.new("RGB", (_GAP + columns * (TILE + _GAP), _GAP + height), _PAPER)
+    top = _GAP
+    for row in rows:
+        for column, tile in enumerate(row):
+            grid.paste(tile, (_GAP + column * (TILE + _GAP), top))
+        top += _find_height(row)
     return np.array(grid)
 
 
@@ -77,25 +71,20 @@ def draw_picture(caption: str, pixels: NDArray[np.uint8]) -> Image.Image:
         >>> import numpy as np
         >>> from skinnet.inference._tiles import draw_picture
         >>> draw_picture("grey", np.full((50, 80, 3), 128, np.uint8)).size
-        (300, 376)
+        (300, 330)
     """
     return _draw_tile(caption, pixels)
 
 
 def draw_pigment_map(
-    name: str,
-    values: NDArray[np.floating],
-    mask: NDArray[np.floating],
-    top: float | None = None,
-    caption: str | None = None,
+    name: str, values: NDArray[np.floating], mask: NDArray[np.floating], caption: str | None = None
 ) -> Image.Image:
-    """Draw a tile with a map of a pigment, on a scale from 0.
+    """Draw a tile with a map of a pigment, on the scale that all maps of this pigment have.
 
     Args:
         name: "melanin" or "hemoglobin".
-        values: Volume fractions [h, w].
+        values: Volume fractions [h, w]; the scale shows them in percent.
         mask: Probability of skin [h, w]; the tile is blank where it is 0.
-        top: End of the scale; by default a round number that at most 1 % of the skin exceeds.
         caption: The text above the map; the pigment's name by default.
 
     Returns:
@@ -105,96 +94,109 @@ def draw_pigment_map(
         >>> import numpy as np
         >>> from skinnet.inference._tiles import draw_pigment_map
         >>> draw_pigment_map("melanin", np.full((4, 4), 0.03), np.ones((4, 4))).size
-        (300, 376)
+        (300, 394)
     """
-    return draw_map(caption or name, values, mask, *_PIGMENTS[name], top)
-
-
-def round_up(value: float) -> float:
-    """Round up to 1, 1.5, 2, 3, 4, 5, 6 or 8 times a power of ten, for the end of a scale."""
-    if not value > 1e-6:
-        return 1e-6
-    power = 10.0 ** math.floor(math.log10(value))
-    return next(step * power for step in (1, 1.5, 2, 3, 4, 5, 6, 8, 10) if step * power >= value)
+    return draw_map(caption or name, values, mask, PIGMENTS[name])
 
 
 def draw_map(
-    caption: str,
-    values: NDArray[np.floating],
-    mask: NDArray[np.floating],
-    unit: str,
-    anchors: _Anchors,
-    top: float | None = None,
+    caption: str, values: NDArray[np.floating], mask: NDArray[np.floating], scale: Scale
 ) -> Image.Image:
-    """A tile of values [h, w] on a scale from 0, blank where `mask` is 0."""
-    top = _choose_top(values[mask > SKIN_THRESHOLD]) if top is None else top
-    weight = np.clip(mask, 0, 1)[..., None]
-    pixels = weight * _apply_colour_map(values / top, anchors) + (1 - weight) * np.array(BLANK)
-    return _draw_tile(caption, pixels.astype(np.uint8), unit, anchors, top)
+    """Draw a tile of values [h, w], blank where `mask` is 0."""
+    share = np.clip(mask, 0, 1).astype(np.float32)
+    width, height = _fit_size(*share.shape)
+    weight = resize(share, width, height)
+    # Values are averaged over skin alone, before they are coloured: a large map costs little.
+    sums = resize(np.where(share > 0, values, 0).astype(np.float32) * share, width, height)
+    mean = sums / np.maximum(weight, 1e-6)
+    colours = weight[..., None] * scale.colour(mean) + (1 - weight[..., None]) * np.array(BLANK)
+    skin = values[mask > SKIN_THRESHOLD]
+    return _draw_tile(caption, colours.astype(np.uint8), scale, _note_excess(skin, scale))
 
 
 def draw_plain_map(
-    name: str,
-    values: NDArray[np.float32],
-    unit: str,
-    anchors: _Anchors,
-    top: float | None = None,
+    caption: str, values: NDArray[np.float32], mask: NDArray[np.floating], scale: Scale
 ) -> Image.Image:
-    top = _choose_top(values) if top is None else top
-    return _draw_tile(name, _apply_colour_map(values / top, anchors), unit, anchors, top)
+    """Draw a tile of values [h, w], also where there is no skin."""
+    colours = scale.colour(resize(values, *_fit_size(*values.shape)))
+    return _draw_tile(caption, colours, scale, _note_excess(values[mask > SKIN_THRESHOLD], scale))
 
 
 def draw_offset(values: NDArray[np.float32]) -> Image.Image:
-    top = _choose_top(np.abs(values))
-    pixels = to_uint8(0.5 + 0.5 * values / top)
-    return _draw_tile("offset", pixels, f"grey is 0, full colour ±{top:g} linear sRGB")
+    """Draw a tile of an offset, linear sRGB [h, w, 3], on grey."""
+    picture = _draw_tile("offset", to_uint8(0.5 + 0.5 * values))
+    tile = Image.new("RGB", (TILE, picture.height + _SCALE), _PAPER)
+    tile.paste(picture)
+    _write(tile, _LABELS, "linear sRGB")
+    _write(tile, _MEASURE, "grey is 0, full colour ±100 %")
+    return tile
 
 
-def _choose_top(values: NDArray[np.floating]) -> float:
-    return round_up(float(np.percentile(values, 99))) if values.size else 1.0
+def place_labels(scale: Scale) -> list[tuple[str, float, float]]:
+    """Place the labels of a scale: each with its left and right end, in pixels of the tile."""
+    font, placed = _load_font(15), []
+    for text, place in scale.label():
+        width = font.getlength(text)
+        left = min(max(place * TILE - width / 2, 0.0), TILE - width)
+        placed.append((text, left, left + width))
+    return placed
 
 
-def _apply_colour_map(values: NDArray[np.floating], anchors: _Anchors) -> NDArray[np.uint8]:
-    """uint8 sRGB [..., 3] of values in [0, 1]."""
-    stops = np.linspace(0, 1, len(anchors))
-    channels = [np.interp(values, stops, channel) for channel in zip(*anchors, strict=True)]
-    colours: NDArray[np.uint8] = np.rint(np.stack(channels, -1)).astype(np.uint8)
-    return colours
+def _note_excess(values: NDArray[np.floating], scale: Scale) -> str:
+    """The share of values above the scale in words, if it is to be noted."""
+    top = scale.ticks[-1]
+    share = float(np.mean(values * scale.factor > top)) if values.size else 0.0
+    return f"{100 * share:.0f} % above {top:g} {scale.symbol}" if share > _NOTED else ""
 
 
-def _corner(column: int, row: int) -> tuple[int, int]:
-    return _GAP + column * (TILE + _GAP), _GAP + row * (_CAPTION + TILE + _SCALE + _GAP)
+def _find_height(row: Sequence[Image.Image]) -> int:
+    """The height of a row, with the gap below it; tiles without a scale are lower."""
+    return max(tile.height for tile in row) + _GAP
 
 
 def _draw_tile(
-    caption: str,
-    pixels: NDArray[np.uint8],
-    unit: str = "",
-    anchors: _Anchors = (),
-    top: float = 1.0,
+    caption: str, pixels: NDArray[np.uint8], scale: Scale | None = None, note: str = ""
 ) -> Image.Image:
-    tile = Image.new("RGB", (TILE, _CAPTION + TILE + _SCALE), _PAPER)
+    below = 0 if scale is None else _SCALE
+    tile = Image.new("RGB", (TILE, _CAPTION + TILE + below), _PAPER)
     pen = ImageDraw.Draw(tile)
     pen.text((0, 2), caption, _INK, _load_font(20))
+    pen.text((TILE - 1, 7), note, _INK, _load_font(15), anchor="ra")
     tile.paste(_fit_square(pixels), (0, _CAPTION))
-    below = _CAPTION + TILE + 6
-    if anchors:
-        ramp = np.linspace(0, 1, TILE, dtype=np.float32)[None].repeat(10, 0)
-        tile.paste(Image.fromarray(_apply_colour_map(ramp, anchors)), (0, below))
-        pen.rectangle((0, below, TILE - 1, below + 9), outline=_OUTLINE)
-        pen.text((0, below + 15), "0", _INK, _load_font(15))
-        pen.text((TILE - 1, below + 15), f"{top:g}", _INK, _load_font(15), anchor="ra")
-        pen.text((TILE / 2, below + 15), unit, _INK, _load_font(15), anchor="ma")
-    elif unit:
-        pen.text((TILE / 2, below + 15), unit, _INK, _load_font(15), anchor="ma")
+    if scale is not None:
+        _draw_scale(tile, scale)
     return tile
+
+
+def _draw_scale(tile: Image.Image, scale: Scale) -> None:
+    below, pen = _CAPTION + TILE, ImageDraw.Draw(tile)
+    places = np.linspace(0, 1, TILE, dtype=np.float32)
+    bar = scale.ramp(places)[None].repeat(10, 0)
+    tile.paste(Image.fromarray(bar), (0, below + _BAR))
+    pen.rectangle((0, below + _BAR, TILE - 1, below + _BAR + 9), outline=_OUTLINE)
+    for _, place in scale.label():
+        x = round(place * (TILE - 1))
+        pen.line((x, below + _TICK, x, below + _TICK + 3), _INK)
+    for text, left, _ in place_labels(scale):
+        pen.text((left, below + _LABELS), text, _INK, _load_font(15))
+    _write(tile, _MEASURE, scale.measure)
+
+
+def _write(tile: Image.Image, below: int, text: str) -> None:
+    """Write a line in the middle, `below` pixels below the picture."""
+    pen = ImageDraw.Draw(tile)
+    pen.text((TILE / 2, _CAPTION + TILE + below), text, _INK, _load_font(15), anchor="ma")
+
+
+def _fit_size(height: int, width: int) -> tuple[int, int]:
+    """The width and height of a picture that fits a tile."""
+    scale = TILE / max(height, width)
+    return max(1, round(width * scale)), max(1, round(height * scale))
 
 
 def _fit_square(pixels: NDArray[np.uint8]) -> Image.Image:
     """The picture in the middle of a blank square, as large as it fits."""
-    height, width = pixels.shape[:2]
-    scale = TILE / max(height, width)
-    size = max(1, round(width * scale)), max(1, round(height * scale))
+    size = _fit_size(*pixels.shape[:2])
     square = Image.new("RGB", (TILE, TILE), BLANK)
     corner = (TILE - size[0]) // 2, (TILE - size[1]) // 2
     square.paste(Image.fromarray(resize(pixels, *size)), corner)

@@ -19,7 +19,6 @@ from skinnet.inference._tiles import draw_grid, draw_picture
 from skinnet.mesh.mesh_file import read_mesh, write_mesh
 from skinnet.pipeline._maps_writer import (
     add_texture,
-    choose_scale_ends,
     draw_pigments,
     fill_albedo,
     show_albedo,
@@ -111,12 +110,11 @@ def _read_mask(path: Path | None) -> Float[np.ndarray, "h w"] | None:
 def _draw_rows(
     before: SkinTexture, after: SkinTexture, colour: SkinColour
 ) -> list[list[Image.Image]]:
-    """Draw albedo and pigments before and after, each pigment on one scale."""
-    ends = choose_scale_ends((before, after))
+    """Draw albedo and pigments before and after."""
     rows = []
     for when, texture in (("before", before), ("after", after)):
         albedo = draw_picture(f"albedo {when}", show_albedo(texture.albedo(colour), texture))
-        rows.append([albedo, *draw_pigments(texture, ends)])
+        rows.append([albedo, *draw_pigments(texture)])
     return rows
 
 

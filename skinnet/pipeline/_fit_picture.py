@@ -3,6 +3,7 @@
 import numpy as np
 from jaxtyping import UInt8
 
+from skinnet.inference._colour_scales import DISTANCE
 from skinnet.inference._tiles import draw_grid, draw_map, draw_picture
 from skinnet.mesh.mesh import Mesh
 from skinnet.pipeline import relight
@@ -15,10 +16,6 @@ from skinnet.shape.registration import Registration
 _PLASTER = np.array([0.55, 0.53, 0.5])
 """Albedo of plaster, linear RGB."""
 
-_MAX_DISTANCE = 3.0
-"""Distance in mm at the end of the colour scale."""
-
-_DISTANCE_COLOURS = ((28, 70, 120), (120, 180, 200), (245, 235, 200), (230, 140, 70), (150, 20, 40))
 _BACKDROP = (0.75, 0.75, 0.75)
 
 
@@ -32,14 +29,7 @@ def draw_fit(scan: Mesh, model: Mesh, fit: Registration) -> UInt8[np.ndarray, "h
     tiles = (
         draw_picture("scan", _render_plaster(scan, view)),
         draw_picture("fitted model", _render_plaster(model, view)),
-        draw_map(
-            "distance to the scan",
-            distance,
-            buffers.hit.astype(np.float64),
-            "mm",
-            _DISTANCE_COLOURS,
-            _MAX_DISTANCE,
-        ),
+        draw_map("distance to the scan", distance, buffers.hit.astype(np.float64), DISTANCE),
     )
     return draw_grid(tiles, len(tiles))
 

@@ -1,6 +1,6 @@
 """Writer of one person's maps: numbers, pictures, a textured mesh and a panel."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from pathlib import Path
 
 import numpy as np
@@ -18,7 +18,6 @@ from skinnet.inference._tiles import (
     draw_grid,
     draw_picture,
     draw_pigment_map,
-    round_up,
 )
 from skinnet.mesh.mesh import Mesh
 from skinnet.mesh.mesh_file import write_mesh
@@ -115,21 +114,10 @@ def draw_maps_panel(
     return draw_grid(tiles, 4)
 
 
-def draw_pigments(
-    texture: SkinTexture, ends: tuple[float | None, float | None] = (None, None)
-) -> list[Image.Image]:
-    """Draw tiles of melanin and hemoglobin, on scales from 0 to the given ends."""
+def draw_pigments(texture: SkinTexture) -> list[Image.Image]:
+    """Draw tiles of melanin and hemoglobin."""
     mask = texture.mask.astype(np.float64)
     return [
-        draw_pigment_map("melanin", texture.f_mel, mask, ends[0]),
-        draw_pigment_map("hemoglobin", texture.f_blood, mask, ends[1]),
+        draw_pigment_map("melanin", texture.f_mel, mask),
+        draw_pigment_map("hemoglobin", texture.f_blood, mask),
     ]
-
-
-def choose_scale_ends(textures: Sequence[SkinTexture]) -> tuple[float, float]:
-    """Choose the ends of the scales of melanin and hemoglobin that several textures share."""
-    mel, blood = (
-        max(float(np.percentile(getattr(one, name)[one.mask], 99)) for one in textures)
-        for name in ("f_mel", "f_blood")
-    )
-    return round_up(mel), round_up(blood)

@@ -25,7 +25,6 @@ from skinnet.inference._tiles import (
     draw_grid,
     draw_picture,
     draw_pigment_map,
-    round_up,
 )
 
 AlbedoRenderer = Callable[[Float32[np.ndarray, "size size 3"]], UInt8[np.ndarray, "height width 3"]]
@@ -149,11 +148,10 @@ def _draw_pigment(
     maps: Sequence[Float32[np.ndarray, "size size"]],
     mask: Bool[np.ndarray, "size size"],
 ) -> list[Image.Image]:
-    """Draw tiles of one pigment on one scale, so that they can be compared."""
-    top = round_up(float(np.percentile([values[mask] for values in maps], 99)))
+    """Draw tiles of one pigment."""
     share = mask.astype(np.float64)
     return [
-        draw_pigment_map(name, values, share, top, caption)
+        draw_pigment_map(name, values, share, caption)
         for caption, values in zip(captions, maps, strict=True)
     ]
 

@@ -13,7 +13,7 @@ from skinnet.errors import InputError
 from skinnet.images._png_file import write_png
 from skinnet.inference._tiles import draw_grid, draw_picture
 from skinnet.pipeline._build_model import MODEL_FOLDER
-from skinnet.pipeline._maps_writer import choose_scale_ends, draw_pigments, show_albedo
+from skinnet.pipeline._maps_writer import draw_pigments, show_albedo
 from skinnet.pipeline._output import MAPS_END, add_output, make_output_folder
 from skinnet.pipeline._source import Source, choose_folder
 
@@ -69,9 +69,8 @@ def _draw_samples(
     textures: list[SkinTexture], albedos: list[UInt8[np.ndarray, "size size 3"]]
 ) -> UInt8[np.ndarray, "h w 3"]:
     """Draw melanin, hemoglobin and albedo of every face, one column each."""
-    ends = choose_scale_ends(textures)
     columns = [
-        [*draw_pigments(texture, ends), draw_picture(f"albedo {number:02}", albedo)]
+        [*draw_pigments(texture), draw_picture(f"albedo {number:02}", albedo)]
         for number, (texture, albedo) in enumerate(zip(textures, albedos, strict=True))
     ]
     return draw_grid([tile for row in zip(*columns, strict=True) for tile in row], len(columns))
