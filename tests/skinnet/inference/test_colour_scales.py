@@ -1,11 +1,15 @@
 """Colour scales are even in lightness, have labels that fit, and show pale and dark skin alike."""
 
+from pathlib import Path
+
 import colour
 import numpy as np
 import pytest
 
+from skinnet import Decomposer
 from skinnet.inference import _colour_scales
 from skinnet.inference._colour_scales import HEMOGLOBIN, MELANIN, Scale
+from skinnet.inference.decomposition import SKIN_THRESHOLD
 from skinnet.physics import F_BLOOD_RANGE, F_MEL_RANGE
 
 SCALES = {name: one for name, one in vars(_colour_scales).items() if isinstance(one, Scale)}
@@ -66,3 +70,13 @@ def test_labels_are_in_percent() -> None:
     labels, places = zip(*MELANIN.label(), strict=True)
     assert labels == ("0", "1", "2", "5", "10", "20", "50 %")
     np.testing.assert_allclose(places, MELANIN.place(np.array([0, 1, 2, 5, 10, 20, 50]) / 100))
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("person", ["132", "001", "008", "137"])
+def test_palest_and_darkest_faces_show_their_pattern(shared_data: Path, person: str) -> None:
+    read = Decomposer(threads=1)(shared_data / f"faces/london/{person}_03.jpg", detail=False)
+    melanin = np.percentile(read.melanin[read.mask > SKIN_THRESHOLD], [2.5, 97.5])
+    first, last = compute_lab(MELANIN, melanin)
+    assert first[0] - last[0] > 6
+    assert colour.delta_E(first, last, method="CIE 2000") > 6
