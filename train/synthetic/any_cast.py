@@ -4,12 +4,16 @@ import numpy as np
 
 from skinnet.mesh import Mesh
 from skinnet.render import OrthographicView, PerspectiveView, Scene
-from train.synthetic.bare_skin import make_skin_scene
-from train.synthetic.framing import make_view, sample_framing, sample_kind
+from train.synthetic.bare_skin import Shot, make_skin_scene
+from train.synthetic.framing import Kind, make_view, sample_framing, sample_kind
 from train.synthetic.head_cast import HeadCast, cast_view
 from train.synthetic.labelled_mesh import LabelledMesh
-from train.synthetic.labels import BODY, MATERIALS
+from train.synthetic.labels import BODY, EYE, MATERIALS, MOUTH, SKIN, TEETH
 from train.synthetic.people import MakeHead, make_group, make_person, sample_group
+
+_TRIES = 20
+_LEAST_SKIN, _LEAST_LONE_SKIN = 0.004, 0.06
+"""Least shares of skin in pictures with a face and without one; less is sampled again."""
 
 
 def cast_any(make_head: MakeHead, rng: np.random.Generator, size: int) -> HeadCast:
@@ -23,16 +27,35 @@ def cast_any(make_head: MakeHead, rng: np.random.Generator, size: int) -> HeadCa
     Returns:
         Its buffers.
     """
-    kind, origin = sample_kind(rng), np.zeros(3)
-    if kind == "face":
-        framing = sample_framing(rng)
-        return _cast(make_person(make_head(rng), rng), make_view(framing, origin, size))
-    if kind == "group":
-        placements, framing = sample_group(rng)
-        group = make_group(placements, make_head, rng)
-        return _cast(group, make_view(framing, origin, size))
-    mesh, point, framing = make_skin_scene(make_head, rng)
-    return _paint_once(_cast(mesh, make_view(framing, point, size)))
+    kind = sample_kind(rng)
+    for _ in range(_TRIES):
+        mesh, point, framing = _SAMPLERS[kind](make_head, rng)
+        cast = _cast(mesh, make_view(framing, point, size))
+        if _shows_skin(cast, kind):
+            break
+    return _paint_once(cast) if kind == "skin" else cast
+
+
+def _sample_face(make_head: MakeHead, rng: np.random.Generator) -> Shot:
+    framing = sample_framing(rng)
+    return Shot(make_person(make_head(rng), rng), np.zeros(3), framing)
+
+
+def _sample_group(make_head: MakeHead, rng: np.random.Generator) -> Shot:
+    placements, framing = sample_group(rng)
+    return Shot(make_group(placements, make_head, rng), np.zeros(3), framing)
+
+
+_SAMPLERS = {"face": _sample_face, "group": _sample_group, "skin": make_skin_scene}
+
+
+def _shows_skin(cast: HeadCast, kind: Kind) -> bool:
+    """Whether enough skin is seen, and of pictures of skin no eye or mouth."""
+    material = cast.label % MATERIALS
+    if kind != "skin":
+        return bool((material == SKIN).mean() > _LEAST_SKIN)
+    features = np.isin(material, (EYE, TEETH, MOUTH)).mean()
+    return bool((material == SKIN).mean() > _LEAST_LONE_SKIN and features == 0)
 
 
 def _cast(mesh: LabelledMesh, view: OrthographicView | PerspectiveView) -> HeadCast:

@@ -13,7 +13,14 @@ from train.synthetic.limbs import Points, Tube, Vector, bend_line, find_elbow, m
 LENGTHS = (2.6, 2.25)
 """Of upper arm and forearm, in half heads of 11.5 cm."""
 
-_POINTS = 36
+_POINTS = 40
+_SHARES = (0, 0.2, 0.45, 0.51, 0.62, 0.92, 1)
+_WIDTHS = (0.46, 0.46, 0.38, 0.36, 0.38, 0.235, 0.24)
+_DEPTHS = (0.48, 0.46, 0.38, 0.35, 0.36, 0.165, 0.14)
+"""Half axes of an arm at shares of its length."""
+
+_CHART = ((0, 0.5, 1), (-1.45, -1.2, 0.1))
+"""Shares of an arm's length, and elevations on its chart, most of which is the forearm's."""
 
 
 class Arm(NamedTuple):
@@ -50,18 +57,16 @@ def make_arm(arm: Arm, rng: np.random.Generator) -> LabelledMesh:
         Skin with numbers of a body, nails and a sleeve.
     """
     share = np.linspace(0, 1, _POINTS)
-    line = bend_line(np.stack([arm.shoulder, arm.elbow, arm.wrist]), _POINTS, 0.12)
-    width = arm.thickness * np.interp(
-        share, (0, 0.2, 0.45, 0.53, 0.65, 1), (0.46, 0.46, 0.38, 0.36, 0.38, 0.235)
+    # The forearm ends within the palm, so that the wrist has no seam.
+    end = arm.wrist + 0.3 * arm.axes[1]
+    line = bend_line(np.stack([arm.shoulder, arm.elbow, arm.wrist, end]), _POINTS, 0.12)
+    width, depth = (
+        arm.thickness * np.interp(share, _SHARES, radii) for radii in (_WIDTHS, _DEPTHS)
     )
-    depth = arm.thickness * np.interp(
-        share, (0, 0.2, 0.45, 0.53, 0.65, 1), (0.48, 0.46, 0.38, 0.35, 0.36, 0.175)
-    )
-    back = _turn_back(line, arm)
-    skin = Tube(line, back, width, depth, -1.45 + 1.45 * share)
+    skin = Tube(line, _turn_back(line, arm), width, depth, np.interp(share, *_CHART))
     hand = make_hand(sample_pose(rng))
     hand = mirror(hand) if arm.left else hand
-    hand = hand._replace(vertices=hand.vertices @ arm.axes + arm.wrist)
+    hand = hand._replace(vertices=arm.thickness * hand.vertices @ arm.axes + arm.wrist)
     bare = number_body(join([make_tube(skin, SKIN), hand]))
     return join([bare, _make_sleeve(skin, arm.sleeve, rng)])
 
@@ -123,7 +128,7 @@ def raise_arm(
     wrist = target - 0.75 * axes[1]
     pole = np.array([outwards * rng.uniform(0.2, 1.2), -1.0, rng.uniform(0, 0.6)])
     elbow = find_elbow(shoulder, wrist, LENGTHS, pole)
-    return Arm(shoulder, elbow, wrist, axes, left, sleeve, rng.uniform(0.85, 1.1))
+    return Arm(shoulder, elbow, wrist, axes, left, sleeve, rng.uniform(0.8, 1.05))
 
 
 def hang_arm(shoulder: Vector, rng: np.random.Generator, sleeve: float) -> Arm:
@@ -133,7 +138,7 @@ def hang_arm(shoulder: Vector, rng: np.random.Generator, sleeve: float) -> Arm:
     wrist = shoulder + [outwards * rng.uniform(0.1, 0.7), -4.6, rng.uniform(0.0, 0.6)]
     elbow = find_elbow(shoulder, wrist, LENGTHS, np.array([outwards, 0, -0.6]))
     axes = aim_hand(np.array([0.0, -1.0, 0.1]), np.array([outwards, 0.0, 0.4]))
-    return Arm(shoulder, elbow, wrist, axes, left, sleeve, rng.uniform(0.85, 1.1))
+    return Arm(shoulder, elbow, wrist, axes, left, sleeve, rng.uniform(0.8, 1.05))
 
 
 def make_legs(x: float, top: float) -> LabelledMesh:

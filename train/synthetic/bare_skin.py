@@ -15,18 +15,18 @@ SUBJECTS = {"forearm": 0.35, "hand": 0.3, "patch": 0.2, "cheek": 0.15}
 """Shares of what pictures of skin show. A cheek or forehead is that of a face, seen so close that
 neither eyes nor mouth are in the picture."""
 
-_CLOSE_UPS = ((0.8, -0.35), (0.75, -0.2), (0.0, 0.55), (1.05, -0.25))
+_CLOSE_UPS = ((0.85, -0.4), (0.95, -0.3), (0.0, 0.6), (1.1, -0.35))
 
 
-class SkinScene(NamedTuple):
-    """A mesh, and a camera before a point of it."""
+class Shot(NamedTuple):
+    """A mesh, and the framing of a point of it."""
 
     mesh: LabelledMesh
     point: Vector
     framing: Framing
 
 
-def make_skin_scene(make_head: MakeHead, rng: np.random.Generator) -> SkinScene:
+def make_skin_scene(make_head: MakeHead, rng: np.random.Generator) -> Shot:
     """Make a picture of skin without a face, with the shares of `SUBJECTS`.
 
     Args:
@@ -42,13 +42,13 @@ def make_skin_scene(make_head: MakeHead, rng: np.random.Generator) -> SkinScene:
     if subject == "patch":
         mesh = number_body(_make_patch(rng))
         angles = rng.normal(0, (0.25, 0.25, 0.0)).clip(-0.5, 0.5)
-        return SkinScene(mesh, np.zeros(3), _frame(rng, angles, (0.8, 1.6)))
+        return Shot(mesh, np.zeros(3), _frame(rng, angles, (0.8, 1.6)))
     mesh = _make_lone_arm(rng)
     angles = np.array([rng.normal(0, 0.3), *rng.uniform(-np.pi, np.pi, 2)])
     if subject == "hand":
-        return SkinScene(mesh, np.array([0, 0.7, 0.0]), _frame(rng, angles, (0.55, 1.3)))
+        return Shot(mesh, np.array([0, 0.7, 0.0]), _frame(rng, angles, (0.55, 1.3)))
     middle = np.array([0.0, -rng.uniform(0.5, 1.6), 0.0])
-    return SkinScene(mesh, middle, _frame(rng, angles, (0.6, 2.6)))
+    return Shot(mesh, middle, _frame(rng, angles, (0.6, 2.6)))
 
 
 def _frame(
@@ -89,7 +89,7 @@ def _make_patch(rng: np.random.Generator) -> LabelledMesh:
     return label_mesh(points.reshape(-1, 3), triangulate_grid(*x.shape), SKIN, chart.reshape(-1, 2))
 
 
-def _make_close_up(head: LabelledMesh, rng: np.random.Generator) -> SkinScene:
+def _make_close_up(head: LabelledMesh, rng: np.random.Generator) -> Shot:
     azimuth, elevation = _CLOSE_UPS[rng.integers(len(_CLOSE_UPS))]
     side = rng.choice([-1, 1])
     skin = head._replace(
@@ -97,4 +97,4 @@ def _make_close_up(head: LabelledMesh, rng: np.random.Generator) -> SkinScene:
     )
     point = find_vertex(skin, side * azimuth, elevation)
     angles = sample_angles(rng) * (0.5, 0.2, 1.0) - (0, 0.9 * side * azimuth, 0)
-    return SkinScene(head, point, _frame(rng, angles, (2.8, 4.5), 0.05))
+    return Shot(head, point, _frame(rng, angles, (3.2, 4.8), 0.05))

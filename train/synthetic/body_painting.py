@@ -16,6 +16,9 @@ from train.synthetic.face_painting import FaceCharts, paint_moles, resize_to_cha
 from train.synthetic.scene import CHART_SIZE, FaceParameters
 from train.synthetic.tensors import expand_colour, expand_scalar, soft_step
 
+_FLATTENING = 0.4
+"""Height over width of a mole on the chart, which is stretched along a limb."""
+
 
 def paint_body(face: FaceParameters) -> FaceCharts:
     """Paint skin without a face, with marks and hairs.
@@ -28,7 +31,7 @@ def paint_body(face: FaceParameters) -> FaceCharts:
     """
     skin, marks, hair = face.skin, face.marks, face.hair
     regions = _evaluate_regions(skin.bump.device)
-    dark = resize_to_chart(marks.freckles) + paint_moles(marks)
+    dark = resize_to_chart(marks.freckles) + paint_moles(marks, _FLATTENING)
     red = resize_to_chart(marks.spots) + resize_to_chart(marks.vessels)
     melanin = expand_scalar(skin.melanin.fraction)
     melanin = melanin * (sum_structure(skin.melanin, regions) + dark).exp()
@@ -56,7 +59,7 @@ def _evaluate_regions(device: torch.device) -> Float[Tensor, "regions rows colum
     hand = soft_step(elevation + 0.05, 0.08).expand(CHART_SIZE)
     tips = soft_step(elevation - 1.25, 0.15).expand(CHART_SIZE)
     joints = sum(torch.exp(-(((elevation - at) / 0.05) ** 2)) for at in (0.5, 0.9, 1.15))
-    elbow = torch.exp(-(((elevation + 0.95) / 0.12) ** 2))
+    elbow = torch.exp(-(((elevation + 1.18) / 0.1) ** 2))
     outer = 1 - inner
     return torch.stack(
         [inner * (1 - hand), inner * hand, tips, joints * outer, elbow * outer, elbow * inner]

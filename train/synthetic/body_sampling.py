@@ -19,6 +19,9 @@ _REGIONS = {
 }
 """Means and standard deviations of log factors over `train.synthetic.body_painting`'s regions."""
 
+_NOISE = {"coarse": (0.1, 8, 10), "middle": (0.07, 24, 30), "fine": (0.06, 84, 104)}
+"""Largest standard deviation of an octave, its rows and its columns."""
+
 
 def sample_body(rng: np.random.Generator, face: FaceParameters) -> FaceParameters:
     """Sample the skin of a person's hands and arms.
@@ -46,19 +49,21 @@ def sample_body(rng: np.random.Generator, face: FaceParameters) -> FaceParameter
 def _sample_pigment(
     rng: np.random.Generator, name: str, pigment: PigmentParameters
 ) -> PigmentParameters:
-    sizes = {
-        "coarse": (0.1, (1, 8, 10)),
-        "middle": (0.07, (1, 24, 30)),
-        "fine": (0.06, (1, 84, 104)),
-    }
     noise = {
-        octave: rng.normal(0, most * rng.uniform(0.2, 1), shape)
-        for octave, (most, shape) in sizes.items()
+        octave: rng.uniform(0.2, 1) * spread * _sample_noise(rng, *shape)
+        for octave, (spread, *shape) in _NOISE.items()
     }
     values = make_tensors(
         regions=rng.normal(*_REGIONS[name]), model_skin=np.zeros((1, *CHART_SIZE)), **noise
     )
     return pigment._replace(**{field: value.float() for field, value in values.items()})
+
+
+def _sample_noise(
+    rng: np.random.Generator, rows: int, columns: int
+) -> Float[np.ndarray, "1 {rows} {columns}"]:
+    """Sample noise that is three times as wide as high, for a chart that is stretched on limbs."""
+    return np.asarray(rng.normal(0, 1, (1, rows, columns)).repeat(3, axis=2)[..., 1 : columns + 1])
 
 
 def _sample_marks(rng: np.random.Generator) -> MarkParameters:
@@ -93,7 +98,7 @@ def _sample_beardless(rng: np.random.Generator) -> BeardParameters:
     values = make_tensors(
         beard=0.0,
         moustache=0.0,
-        stubble=rng.choice([0.0, rng.uniform(0.1, 0.6)], p=(0.4, 0.6)),
+        stubble=rng.choice([0.0, rng.uniform(0.05, 0.35)], p=(0.3, 0.7)),
         grain=_draw_hairs(rng),
     )
     return BeardParameters(**{name: value.float() for name, value in values.items()})
@@ -102,9 +107,9 @@ def _sample_beardless(rng: np.random.Generator) -> BeardParameters:
 def _draw_hairs(rng: np.random.Generator) -> Float[np.ndarray, "1 rows columns"]:
     """Short lines along the limb, none of them on fingers."""
     rows, columns = CHART_SIZE
-    count = int(700 * rng.random() ** 2)
+    count = int(1500 * rng.random() ** 2)
     start = rng.uniform((0.42 * rows, 0.15 * columns), (rows, 0.85 * columns), (count, 2))
-    along = rng.uniform(1.5, 5, (count, 1)) * rng.normal((1, 0.5), (0.3, 0.5), (count, 2))
+    along = rng.uniform(1.5, 6, (count, 1)) * rng.normal((1, 0.5), (0.3, 0.5), (count, 2))
     points = start + np.linspace(0, 1, 10)[:, None, None] * along
     row, column = points.round().astype(int).reshape(-1, 2).clip(0, (rows - 1, columns - 1)).T
     hairs = np.zeros((1, rows, columns))

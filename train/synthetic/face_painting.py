@@ -131,12 +131,12 @@ def resize_to_chart(
     return F.interpolate(noise, CHART_SIZE, mode="bilinear")
 
 
-def paint_moles(marks: MarkParameters) -> _Map:
-    """Paint log factors of all moles on the chart."""
+def paint_moles(marks: MarkParameters, flattening: float = 1.0) -> _Map:
+    """Paint log factors of all moles on the chart; flat ones are wider than high."""
     azimuth, elevation = (axis.to(marks.moles.device) for axis in compute_chart_angles(*CHART_SIZE))
     centre, height, radius, factor = (part[..., None, None] for part in marks.moles.unbind(2))
     across = torch.exp(-(((azimuth - centre) / radius) ** 2) / 2)
-    along = torch.exp(-(((elevation - height) / radius) ** 2) / 2)
+    along = torch.exp(-(((elevation - height) / (flattening * radius)) ** 2) / 2)
     # The Gaussians are separable: two small matrix products paint all of them.
     return torch.matmul((factor * along)[..., 0].mT, across[:, :, 0])[:, None]
 

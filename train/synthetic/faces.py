@@ -21,8 +21,8 @@ from train.synthetic.measured_skins import MeasuredSkins
 from train.synthetic.model_skins import ModelSkins, apply_model_skin, load_model_skins
 from train.synthetic.paintings import collate_scenes, stack
 from train.synthetic.renderer import render
-from train.synthetic.scene import HeadBuffers, SceneParameters, map_tensors
-from train.synthetic.scene_sampling import sample_scene
+from train.synthetic.scene import FaceParameters, HeadBuffers, SceneParameters, map_tensors
+from train.synthetic.scene_sampling import Person, meter_skin, sample_person, sample_scene
 from train.synthetic.variety import Variety
 
 STAGES = {"fit": ("train", "val"), "validate": ("val",), "test": ("test",)}
@@ -74,31 +74,39 @@ class SyntheticScenes(Dataset[SceneParameters]):
     def __getitem__(self, index: int) -> SceneParameters:
         number = index % len(self.heads.label)
         head = map_tensors(lambda values: values[number], self.heads)
-        if self.variety == "mild":
-            return self._sample(index, head)
-        numbers = np.unique(head.label.numpy() // MATERIALS).tolist()
-        people = {one % BODY: self._sample(index, head, one % BODY) for one in numbers}
-        paintings = [people[one % BODY] for one in numbers]
-        faces = [
-            sample_body(np.random.default_rng([*self.key, index, 3, one]), scene.face)
-            if one >= BODY
-            else scene.face
-            for one, scene in zip(numbers, paintings, strict=True)
-        ]
-        return paintings[0]._replace(
-            face=stack(faces), surroundings=stack([one.surroundings for one in paintings])
-        )
+        key = [*self.key, index]
+        rng = np.random.default_rng(key)
+        scene = sample_scene(rng, head, self.domain_randomised, self.variety)
+        scene = scene._replace(face=self._measure(scene.face, key))
+        return scene if self.variety == "mild" else self._add_paintings(scene, key)
 
-    def _sample(self, index: int, head: HeadBuffers, person: int = 0) -> SceneParameters:
-        """Sample a scene with one of its people; all have the light and camera of the first."""
-        key = [*self.key, index] if person == 0 else [*self.key, index, 4, person]
-        scene = sample_scene(np.random.default_rng(key), head, self.domain_randomised, self.variety)
-        face = scene.face
+    def _measure(self, face: FaceParameters, key: list[int]) -> FaceParameters:
+        """Give a face a measured skin and the skin of a model, if there are such."""
         if self.measured is not None:
             face = self.measured.apply(face, np.random.default_rng([*key, 2]))
         if self.skins is not None:
             face = apply_model_skin(face, np.random.default_rng([*key, 1]), self.skins)
-        return scene._replace(face=face)
+        return face
+
+    def _add_paintings(self, scene: SceneParameters, key: list[int]) -> SceneParameters:
+        """Stack the faces and surroundings of all paintings that the picture shows."""
+        numbers = np.unique(scene.head.label.numpy() // MATERIALS).tolist()
+        people = {0: (scene.face, scene.surroundings)}
+        for person in {one % BODY for one in numbers} - {0}:
+            people[person] = self._sample_person([*key, 4, person])
+        faces, surroundings = zip(*(people[one % BODY] for one in numbers), strict=True)
+        skins = [
+            sample_body(np.random.default_rng([*key, 3, one]), face) if one >= BODY else face
+            for one, face in zip(numbers, faces, strict=True)
+        ]
+        camera = meter_skin(scene.camera, scene.head)
+        return scene._replace(face=stack(skins), surroundings=stack(surroundings), camera=camera)
+
+    def _sample_person(self, key: list[int]) -> Person:
+        face, surroundings = sample_person(
+            np.random.default_rng(key), self.domain_randomised, self.variety
+        )
+        return self._measure(face, key), surroundings
 
 
 class SyntheticFaces(LightningDataModule):

@@ -85,10 +85,10 @@ def _make_thumb(flexion: float) -> LabelledMesh:
     )
     directions[1:, 0] += 0.5 * flexion
     directions /= np.linalg.norm(directions, axis=1, keepdims=True)
-    start = np.array([[-0.12, 0.14, -0.05]])
-    steps = np.array([0.42, 0.30, 0.26])[:, None] * directions
+    start = np.array([[-0.04, 0.10, 0.03]])
+    steps = np.array([0.52, 0.30, 0.26])[:, None] * directions
     corners = np.concatenate([start, start + np.cumsum(steps, 0)])
-    return _make_digit(corners, 0.11, 0.7, 1.5, np.array([-0.75, -0.3, 0.6]))
+    return _make_digit(corners, 0.12, 0.7, 0.6, np.array([-0.75, -0.3, 0.6]))
 
 
 def _make_digit(

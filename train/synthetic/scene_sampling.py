@@ -6,6 +6,7 @@ from jaxtyping import Float
 
 from skinnet.physics import LIGHTS
 from train.synthetic.face_sampling import make_tensors, sample_face
+from train.synthetic.labels import MATERIALS, SKIN
 from train.synthetic.scene import (
     LAMPS,
     CameraParameters,
@@ -47,15 +48,41 @@ def sample_scene(
     face = sample_face(rng, domain_randomised, variety)
     surroundings, light = _sample_surroundings(rng), sample_light(rng)
     camera = sample_camera(rng, head.label.shape[-1])
+    return SceneParameters(
+        head, *_finish_person(rng, face, surroundings, domain_randomised), light, camera
+    )
+
+
+Person = tuple[FaceParameters, SurroundingsParameters]
+"""A face, and the clothes of a person with the wall that would be behind them."""
+
+
+def sample_person(
+    rng: np.random.Generator, domain_randomised: bool = False, variety: Variety = "any"
+) -> Person:
+    """Sample one more person for a scene, who has the scene's light and camera.
+
+    Args:
+        rng: Random numbers.
+        domain_randomised: As in `sample_scene`.
+        variety: Which kind of faces.
+
+    Returns:
+        Face and surroundings in float32.
+    """
+    face = sample_face(rng, domain_randomised, variety)
+    return _finish_person(rng, face, _sample_surroundings(rng), domain_randomised)
+
+
+def _finish_person(
+    rng: np.random.Generator,
+    face: FaceParameters,
+    surroundings: SurroundingsParameters,
+    domain_randomised: bool,
+) -> Person:
     if domain_randomised:
         face = _add_oil(face, float(np.exp(rng.exponential(RANDOMISED_OIL))))
-    return SceneParameters(
-        head,
-        map_tensors(torch.Tensor.float, face),
-        map_tensors(torch.Tensor.float, surroundings),
-        light,
-        camera,
-    )
+    return map_tensors(torch.Tensor.float, face), map_tensors(torch.Tensor.float, surroundings)
 
 
 def _add_oil(face: FaceParameters, factor: float) -> FaceParameters:
@@ -133,3 +160,20 @@ def sample_camera(rng: np.random.Generator, size: int) -> CameraParameters:
         )
     )
     return map_tensors(torch.Tensor.float, camera)
+
+
+def meter_skin(camera: CameraParameters, head: HeadBuffers) -> CameraParameters:
+    """Let a camera meter skin the more of the picture it fills, as cameras meter what they see.
+
+    Args:
+        camera: A camera of `sample_camera`.
+        head: Buffers of a picture, without a batch axis.
+
+    Returns:
+        The camera with more metering and less error of exposure.
+    """
+    share = (head.label % MATERIALS == SKIN).float().mean()
+    return camera._replace(
+        exposure=camera.exposure ** (1 - 0.5 * share),
+        metering=camera.metering.lerp(torch.ones(()), share),
+    )
