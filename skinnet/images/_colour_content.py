@@ -49,8 +49,13 @@ _ON_CURVE = -2.4
 """Log of residuals (90 %) over chroma (75 %) below which a region is toned, however strong its
 tones; the least of the portraits is -1.8."""
 
-_BLACK, _EXACT = 8.0, 0.6
-"""Luma below which cells of a texture do not count, and largest residual of exact tones."""
+_BLACK = 8.0
+"""Luma below which cells of a texture do not count."""
+
+_EXACT, _ROUNDED, _SHARE = 0.6, 0.2, 0.45
+"""Limits of the residuals (95 %) of exact tones: above the first none is exact, below the second
+all are, and between them those are whose residuals are less than this share of the chroma's spread
+(75 %). Dark or even skin has small residuals too, but its chroma varies no more than they do."""
 
 _SKIN, _SKIN_PRECISION = np.array([0.757, -0.296]), np.array([[37.1, 13.6], [13.6, 33.4]])
 _SKIN_DISTANCE, _LEAST_RED, _MUCH_RED, _MOST_BLUE = 12.0, 0.15, 0.85, 0.2
@@ -134,9 +139,15 @@ def find_tone_of_texture(texture: NDArray[np.uint8]) -> str | None:
     if not lit.any() or np.percentile(np.hypot(*ratios[lit].T), 98) < _GREY:
         return "grey"
     is_varied = lit.sum() >= _CELLS and np.ptp(cells.luma[lit]) > _BLACK
-    if is_varied and np.percentile(_fit_curve(cells)[lit], 95) < _EXACT:
+    if is_varied and np.percentile(_fit_curve(cells)[lit], 95) < _limit_exact(cells.chroma[lit]):
         return _name_tint(cells)
     return None
+
+
+def _limit_exact(chroma: NDArray[np.float32]) -> float:
+    """The largest residual of exact tones in cells of a chroma [n, 2]."""
+    spread = np.percentile(np.hypot(*(chroma - np.median(chroma, 0)).T), 75)
+    return float(np.clip(_SHARE * spread, _ROUNDED, _EXACT))
 
 
 def _find_tone_anywhere(region: NDArray[np.uint8], cells: _Cells) -> str | None:

@@ -3,11 +3,12 @@
 import numpy as np
 import pytest
 from painted_skin import compress_jpeg
+from scipy import ndimage
 from toned_pictures import TONES, cast, make_colour, to_uint8
 
 from skinnet.errors import InputError
 from skinnet.images import Box, find_faces, frame_head, linear_to_srgb, resize, srgb_to_linear
-from skinnet.images._colour_content import check_colour, find_tone
+from skinnet.images._colour_content import check_colour, find_tone, find_tone_of_texture
 
 FACE = Box(126, 64, 226, 164)
 
@@ -99,3 +100,16 @@ def test_the_error_names_the_picture_and_the_remedy() -> None:
 @pytest.mark.parametrize("shape", [(1, 1), (1, 300), (3, 2), (40, 3)])
 def test_tiny_pictures_are_not_judged(shape: tuple[int, int]) -> None:
     assert find_tone_anywhere(np.full((*shape, 3), (90, 160, 140), np.uint8)) is None
+
+
+def test_a_dark_even_texture_of_skin_has_no_tone() -> None:
+    rng = np.random.default_rng(0)
+    light, red = (ndimage.gaussian_filter(rng.normal(0, 1, (256, 256)), 24) for _ in range(2))
+    light, red = 8 * light / light.std(), 0.8 * red / red.std()
+    skin = (
+        np.array([95.0, 62, 48]) + light[..., None] * (1, 0.92, 0.88) + red[..., None] * (1, 0, 0)
+    )
+    noise = rng.uniform(-0.5, 0.5, skin.shape)
+    assert find_tone_of_texture(np.rint(skin + noise).astype(np.uint8)) is None
+    toned = np.array([95.0, 62, 48]) + light[..., None] * (1, 0.92, 0.88)
+    assert find_tone_of_texture(np.rint(toned + noise).astype(np.uint8)) == "brown (sepia)"
