@@ -137,9 +137,25 @@ def _add_common(verb: argparse.ArgumentParser) -> None:
         help="encoder, X.onnx, with X.decoder.onnx in the same folder; by default the shipped one",
     )
     verb.add_argument(
+        "--faces",
+        type=lambda word: int(word) if word.lstrip("-").isdecimal() else word,
+        default="largest",
+        metavar="all|largest|N",
+        help="which faces of a photograph of several people; N are the N largest; by default the "
+        "largest one",
+    )
+    verb.add_argument(
+        "--region",
+        choices=("face", "skin"),
+        default="face",
+        help="skin for photographs of skin without a face, such as a forearm; face by default",
+    )
+    verb.add_argument(
         "--whole-image",
-        action="store_true",
-        help="take the whole image, without a search for a face",
+        dest="region",
+        action="store_const",
+        const="skin",
+        help="the same as --region skin",
     )
 
 

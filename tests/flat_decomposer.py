@@ -2,6 +2,7 @@
 
 import json
 from collections.abc import Callable
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -29,6 +30,10 @@ WALL = (255, 255, 255)
 """A colour in which no face is found."""
 
 
+PEOPLE = 3
+"""Faces that are found if all are asked for."""
+
+
 class FlatDecomposer(Decomposer):
     """Reads a thousandth of the red of the first pixel as melanin; white has no face."""
 
@@ -39,14 +44,15 @@ class FlatDecomposer(Decomposer):
         """Nothing is to be opened."""
 
     def __call__(
-        self, picture: Picture, whole_image: bool, name: str, detail: bool
-    ) -> Decomposition:
+        self, picture: Picture, *, name: str, faces: str | int, **_: object
+    ) -> list[Decomposition]:
         photo = picture.srgb
+        count = faces if isinstance(faces, int) else {"largest": 1, "all": PEOPLE}[faces]
         height, width = photo.shape[:2]
         if tuple(photo[0, 0]) == WALL:
             raise NoFaceError(f"No face was found in {name}; try --whole-image.")
         flat = np.full((height, width), photo[0, 0, 0] / 1000, np.float32)
-        return Decomposition(
+        one = Decomposition(
             *(flat, flat / 2, flat, flat, np.ones_like(flat), np.zeros((*flat.shape, 3), "f4")),
             light={"D": 1.0},
             camera={"components": [0.0]},
@@ -56,7 +62,9 @@ class FlatDecomposer(Decomposer):
             model={"version": "0"},
             colour_space=picture.colour_space,
             notes=picture.notes,
+            faces_found=count,
         )
+        return [replace(one, face_id=number + 1) for number in range(count)]
 
     def edit_picture(self, picture: Picture, *_: object, **__: object) -> Picture:
         """The picture as it is."""

@@ -14,7 +14,7 @@ from skinnet.images.picture import Picture
 _RAMP_START, _RAMP_END = 0.25, 0.75
 """Masks between which changes set in; pixels below the first keep their exact values."""
 
-_FADE = 0.08
+FADE = 0.08
 """Share of the box over which an edit fades out towards an edge inside the photograph."""
 
 _RATIO_OFFSET = 1e-3
@@ -123,7 +123,7 @@ def _enlarge(
 
 
 def _fade_axis(count: int, at_start: bool, at_end: bool) -> NDArray[np.float64]:
-    place = (np.arange(count) + 0.5) / count / _FADE
+    place = (np.arange(count) + 0.5) / count / FADE
     start = place if at_start else np.ones(count)
     end = place[::-1] if at_end else np.ones(count)
     return np.minimum(np.minimum(start, end), 1)

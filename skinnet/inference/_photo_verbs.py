@@ -17,11 +17,18 @@ from skinnet.images._walk import STDIN, Found, Walk, check_mark, find_one, walk
 from skinnet.images._write import choose_suffix, find_format, write_picture
 from skinnet.images.photograph import read_picture
 from skinnet.images.picture import Picture
+from skinnet.inference._face_choice import check_choice
 from skinnet.inference._messages import note, print_line, report
 from skinnet.inference._own_results import Source, choose_edit_target, choose_result_stem
 from skinnet.inference.decomposer import Decomposer
 from skinnet.inference.decomposition import Decomposition
-from skinnet.inference.results import _list_ends, _make_folder, write_results
+from skinnet.inference.results import (
+    _list_all_ends,
+    _make_folder,
+    _name_part,
+    _Result,
+    _write_all,
+)
 
 _READ, _FACELESS, _WRITTEN_NOT, _READ_NOT = (
     "read",
@@ -34,6 +41,7 @@ _READ, _FACELESS, _WRITTEN_NOT, _READ_NOT = (
 
 def predict(options: argparse.Namespace) -> bool:
     """Decompose every input; report bad inputs and continue. Returns whether none was bad."""
+    check_choice(options.faces)
     decomposer = Decomposer(options.model)
     decomposer.load()
     found = walk(options.input, options.recursive)
@@ -60,12 +68,18 @@ def _predict_one(decomposer: Decomposer, found: Found, options: argparse.Namespa
         raise found.error
     source, picture, notes = _read(found)
     try:
-        decomposition = decomposer(picture, options.whole_image, source.name, options.detail)
+        decompositions = decomposer(
+            picture,
+            name=source.name,
+            detail=options.detail,
+            faces=options.faces,
+            region=options.region,
+        )
     except NoFaceError as error:
         report(error)
         return _FACELESS
     try:
-        _write(source, picture, decomposition, notes, options)
+        _write(source, picture, decompositions, notes, options)
     except InputError as error:
         report(error)
         return _WRITTEN_NOT
@@ -75,27 +89,38 @@ def _predict_one(decomposer: Decomposer, found: Found, options: argparse.Namespa
 def _write(
     source: Source,
     picture: Picture,
-    decomposition: Decomposition,
+    decompositions: Sequence[Decomposition],
     notes: Sequence[str],
     options: argparse.Namespace,
 ) -> None:
-    """Write the results of a photograph under a name that is free or its own, and print them."""
+    """Write the results of a photograph under names that are free or its own, and print them."""
     folder = _make_folder(options.output or source.folder / OUTPUT)
     with lock_folder(folder):
-        stem = choose_result_stem(folder, source, _list_ends(decomposition))
+        stem = choose_result_stem(folder, source, _list_all_ends(decompositions))
         if stem != source.stem:
             others = f"{folder} holds other files of the name {source.stem}"
             notes = (*notes, f"{others}; the results of {source.name} are numbered: {stem}.")
-        summary = {"file": source.name, "input": source.describe(folder)} | decomposition.summary()
-        summary["notes"] = [*notes, *summary["notes"]]
-        count = write_results(folder, stem, picture.srgb, decomposition, summary, source.digest)
-    for sentence in summary["notes"]:
+        results = []
+        for each in decompositions:
+            summary = {"file": source.name, "input": source.describe(folder)} | each.summary()
+            summary["notes"] = [*notes, *summary["notes"]]
+            results.append(_Result(stem + _name_part(each, len(decompositions)), each, summary))
+        count = _write_all(folder, results, picture.srgb, source.digest)
+    for sentence in dict.fromkeys(each for _, _, summary in results for each in summary["notes"]):
         note(sentence)
-    if options.json:
+    for result in results:
+        _print(source, folder, result, count, options.json)
+
+
+def _print(source: Source, folder: Path, result: _Result, count: int, as_json: bool) -> None:
+    stem, decomposition, summary = result
+    if as_json:
         print_line(json.dumps(summary, allow_nan=False))
         return
     written = f"{count} files: {folder / stem}_*.png and {folder / stem}.json"
-    print_line(f"{source.name}: {_describe_skin(summary)}; {written}")
+    several = (decomposition.faces_found or 0) > 1
+    face = f", face {decomposition.face_id}" if several else ""
+    print_line(f"{source.name}{face}: {_describe_skin(summary)}; {written}")
 
 
 def _describe_skin(summary: dict[str, Any]) -> str:
@@ -117,6 +142,7 @@ def _describe_run(counts: Counter[str], found: Walk) -> str:
 
 def edit(options: argparse.Namespace) -> None:
     """Write one photograph with its pigments multiplied."""
+    check_choice(options.faces)
     if options.output is not None:
         find_format(options.output)
     decomposer = Decomposer(options.model)
@@ -124,7 +150,12 @@ def edit(options: argparse.Namespace) -> None:
     suffix, changes = choose_suffix(picture, "" if source.path is None else source.path.suffix)
     target = choose_edit_target(source, options.output, suffix)
     edited = decomposer.edit_picture(
-        picture, options.melanin, options.hemoglobin, options.whole_image, source.name
+        picture,
+        options.melanin,
+        options.hemoglobin,
+        name=source.name,
+        faces=options.faces,
+        region=options.region,
     )
     losses = write_picture(target, edited, Mark("edit", EDITED, source.digest))
     changes = () if options.output else changes

@@ -5,23 +5,22 @@ from collections.abc import Mapping
 from dataclasses import replace
 from functools import cached_property
 from pathlib import Path
-from typing import Any
+from typing import Any, overload
 
 import numpy as np
 from numpy.typing import NDArray
 from PIL import Image
 
-from skinnet.errors import InputError, NoFaceError
-from skinnet.images._colour_content import check_colour, refuse_grey
+from skinnet.errors import InputError
 from skinnet.images.box import Box
-from skinnet.images.faces.finder import choose_largest, find_faces
-from skinnet.images.faces.framing import frame_head
 from skinnet.images.photograph import read_picture
 from skinnet.images.picture import Picture
 from skinnet.images.resizing import resize
 from skinnet.images.srgb import srgb_to_linear
-from skinnet.inference._editing import ColourChange, apply_change, compute_change, fade_edges
+from skinnet.inference._editing import ColourChange, apply_change, compute_change
+from skinnet.inference._face_choice import FaceChoice
 from skinnet.inference._onnx_pair import get_decoder_path, refuse_other_export
+from skinnet.inference._subject import Region, Subject, find_subjects
 from skinnet.inference._transparency import note_transparency
 from skinnet.inference.decomposition import Decomposition
 from skinnet.inference.full_resolution._colour_table import tabulate_colours
@@ -36,14 +35,6 @@ from skinnet.inference.onnx_model import (
 
 MAX_FACTOR = 10.0
 """Largest factor of a pigment in an edit."""
-
-_MIN_SIDE = 16
-"""Smallest side, in pixels, of the encoder's input."""
-
-_WHOLE_IMAGE = (
-    "The whole image was read, without a search for a face. The network learnt from faces: melanin "
-    "of a bare patch of skin can be a third more or less than that of the same skin in its face."
-)
 
 ImageLike = str | Path | Image.Image | NDArray[Any] | Picture
 _Arrays = Mapping[str, NDArray[np.float32]]
@@ -94,53 +85,74 @@ class Decomposer:
         """
         _ = self.encoder, self.decoder
 
+    @overload
     def __call__(
         self,
         image: ImageLike,
         whole_image: bool = False,
         name: str | None = None,
         detail: bool = True,
-    ) -> Decomposition:
+        *,
+        faces: None = None,
+        region: Region = "face",
+    ) -> Decomposition: ...
+
+    @overload
+    def __call__(
+        self,
+        image: ImageLike,
+        whole_image: bool = False,
+        name: str | None = None,
+        detail: bool = True,
+        *,
+        faces: FaceChoice,
+        region: Region = "face",
+    ) -> list[Decomposition]: ...
+
+    def __call__(
+        self,
+        image: ImageLike,
+        whole_image: bool = False,
+        name: str | None = None,
+        detail: bool = True,
+        *,
+        faces: FaceChoice | None = None,
+        region: Region = "face",
+    ) -> Decomposition | list[Decomposition]:
         """Decompose a photograph.
 
         Args:
             image: A path, a Pillow image, an array or a `Picture`; `skinnet.images.read_picture`
                 says what they may be.
-            whole_image: Whether to decompose the whole image, and not the square around the head of
-                the largest face.
+            whole_image: Another word for `region="skin"`.
             name: Name of the image in error messages; the path by default.
             detail: Whether to add the photograph's detail to the maps; without it they are the
                 network's maps, enlarged, which is faster.
+            faces: "all", "largest", or how many of the largest faces to read; None for the largest
+                one alone.
+            region: "face", or "skin" to read whatever skin the photograph shows, such as a forearm,
+                without a search for a face.
 
         Returns:
-            Maps of the photograph's size, light and camera.
+            Maps of the photograph's size, light and camera. If `faces` is given, a list of them,
+            one for each face, from left to right.
 
         Raises:
-            InputError: The image or a model file cannot be used, or the image has no colour: it is
-                grey, or toned in sepia, cyanotype and the like.
+            InputError: An argument, the image or a model file cannot be used, or the image has no
+                colour: it is grey, or toned in sepia, cyanotype and the like.
             NoFaceError: No face was found.
+
+        Example:
+            >>> from skimage.data import astronaut
+            >>> from skinnet.inference import Decomposer
+            >>> [each.face_id for each in Decomposer()(astronaut(), faces="all")]
+            [1]
         """
         picture = _as_picture(image)
-        photo = picture.srgb
-        box = _choose_box(photo, whole_image, name or _name_image(image))
-        encoder_outputs = self._encode(photo[box.slices])
-        layers = self._make_layers(photo[box.slices], encoder_outputs, detail)
-        alpha = None if picture.alpha is None else picture.alpha[box.slices]
-        notes = note_transparency(alpha, layers.mask, name or _name_image(image))
-        return Decomposition(
-            **_paste_layers(layers, photo, box),
-            light=self._name_light(encoder_outputs),
-            camera=_name_camera(encoder_outputs),
-            box=box,
-            colour_space=picture.colour_space,
-            notes=(*picture.notes, *notes, *([_WHOLE_IMAGE] if whole_image else [])),
-            output_info=self.encoder.output_info,
-            model={
-                "version": self.encoder.version,
-                "trained_on": self.encoder.trained_on,
-                "optics": self.encoder.optics,
-            },
-        )
+        name = name or _name_image(image)
+        subjects = find_subjects(picture.srgb, name, faces, "skin" if whole_image else region)
+        read = [self._decompose(picture, subject, name, detail) for subject in subjects]
+        return read[0] if faces is None else read
 
     def edit(
         self,
@@ -149,6 +161,9 @@ class Decomposer:
         hemoglobin: float = 1.0,
         whole_image: bool = False,
         name: str | None = None,
+        *,
+        faces: FaceChoice = "largest",
+        region: Region = "face",
     ) -> NDArray[np.uint8]:
         """Multiply the pigments of a photograph.
 
@@ -160,15 +175,16 @@ class Decomposer:
                 says what they may be.
             melanin: Factor of melanin in [0, 10].
             hemoglobin: Factor of hemoglobin in [0, 10].
-            whole_image: Whether to edit the whole image, and not the square around the head of the
-                largest face.
+            whole_image: Another word for `region="skin"`.
             name: Name of the image in error messages; the path by default.
+            faces: "all", "largest", or how many of the largest faces to edit.
+            region: "face", or "skin" to edit whatever skin the photograph shows.
 
         Returns:
             The edited photograph, uint8 sRGB [H, W, 3].
 
         Raises:
-            InputError: A factor, the image or a model file cannot be used, or the image has no
+            InputError: An argument, the image or a model file cannot be used, or the image has no
                 colour.
             NoFaceError: No face was found.
 
@@ -181,7 +197,9 @@ class Decomposer:
         """
         picture = _as_picture(image)
         name = name or _name_image(image)
-        return self.edit_picture(picture, melanin, hemoglobin, whole_image, name).srgb
+        return self.edit_picture(
+            picture, melanin, hemoglobin, whole_image, name, faces=faces, region=region
+        ).srgb
 
     def edit_picture(
         self,
@@ -190,6 +208,9 @@ class Decomposer:
         hemoglobin: float = 1.0,
         whole_image: bool = False,
         name: str | None = None,
+        *,
+        faces: FaceChoice = "largest",
+        region: Region = "face",
     ) -> Picture:
         """Multiply the pigments of a picture, which keeps its depth, colour space and alpha.
 
@@ -197,15 +218,16 @@ class Decomposer:
             picture: A picture from `skinnet.images.read_picture`.
             melanin: Factor of melanin in [0, 10].
             hemoglobin: Factor of hemoglobin in [0, 10].
-            whole_image: Whether to edit the whole image, and not the square around the head of the
-                largest face.
+            whole_image: Another word for `region="skin"`.
             name: Name of the picture in error messages; its own by default.
+            faces: "all", "largest", or how many of the largest faces to edit.
+            region: "face", or "skin" to edit whatever skin the photograph shows.
 
         Returns:
             The edited picture. Pixels that are not skin keep their stored values.
 
         Raises:
-            InputError: A factor or a model file cannot be used, or the picture has no colour.
+            InputError: An argument or a model file cannot be used, or the picture has no colour.
             NoFaceError: No face was found.
 
         Example:
@@ -217,26 +239,69 @@ class Decomposer:
             >>> bool((edited.pixels[0] == picture.pixels[0]).all())  # the wall
             True
         """
-        _check_factors(melanin=melanin, hemoglobin=hemoglobin)
-        photo = picture.srgb
-        box = _choose_box(photo, whole_image, name or picture.name)
-        encoder_outputs = self._encode(photo[box.slices])
-        change = self._compute_change(encoder_outputs, melanin, hemoglobin)
-        mask = encoder_outputs["mask"][0] * fade_edges(change.loss.shape[:2], box, photo.shape[:2])
-        colour = picture.as_colour()
-        pixels = colour.pixels.copy()
-        alpha = None if colour.alpha is None else colour.alpha[box.slices]
-        crop = replace(colour, pixels=pixels[box.slices], alpha=alpha)
-        apply_change(crop, change, encoder_outputs["specular"][0], mask)
-        skin = resize(encoder_outputs["mask"][0], box.width, box.height)
-        notes = note_transparency(alpha, skin, name or picture.name)
-        return replace(colour, pixels=pixels, notes=(*colour.notes, *notes))
+        factors = {"melanin": melanin, "hemoglobin": hemoglobin}
+        _check_factors(**factors)
+        name = name or picture.name
+        photo, colour = picture.srgb, picture.as_colour()
+        edited = replace(colour, pixels=colour.pixels.copy())
+        notes = list(colour.notes)
+        for subject in find_subjects(photo, name, faces, "skin" if whole_image else region):
+            notes += self._edit_in_place(edited, photo, subject, factors, name)
+        return replace(edited, notes=tuple(dict.fromkeys(notes)))
 
-    def _encode(self, crop: NDArray[np.uint8]) -> dict[str, NDArray[np.float32]]:
-        """Maps [1, h, w] and capture [1, ...] of a crop at the encoder's working size."""
-        scale = self.encoder.working_size / max(crop.shape[:2])
-        height, width = (max(_MIN_SIDE, round(side * scale)) for side in crop.shape[:2])
-        return self.encoder.run({"image": resize(crop, width, height)[None]})
+    def _decompose(
+        self, picture: Picture, subject: Subject, name: str, detail: bool
+    ) -> Decomposition:
+        photo, box = picture.srgb, subject.crop.box
+        encoder_outputs = self._encode(photo, subject)
+        layers = self._make_layers(photo[box.slices], encoder_outputs, detail)
+        alpha = None if picture.alpha is None else picture.alpha[box.slices]
+        notes = note_transparency(alpha, layers.mask, name)
+        return Decomposition(
+            **_paste_layers(layers, photo, box),
+            light=self._name_light(encoder_outputs),
+            camera=_name_camera(encoder_outputs),
+            box=box,
+            colour_space=picture.colour_space,
+            notes=(*picture.notes, *notes, *subject.notes),
+            output_info=self.encoder.output_info,
+            model={
+                "version": self.encoder.version,
+                "trained_on": self.encoder.trained_on,
+                "optics": self.encoder.optics,
+            },
+            face_id=subject.face_id,
+            faces_found=None if subject.faces is None else len(subject.faces),
+        )
+
+    def _edit_in_place(
+        self,
+        colour: Picture,
+        photo: NDArray[np.uint8],
+        subject: Subject,
+        factors: Mapping[str, float],
+        name: str,
+    ) -> tuple[str, ...]:
+        """Multiply the pigments of one subject in the pixels of `colour`. Returns notes."""
+        box = subject.crop.box
+        encoder_outputs = self._encode(photo, subject)
+        change = self._compute_change(encoder_outputs, factors)
+        skin = encoder_outputs["mask"][0]
+        mask = skin * subject.crop.fade(skin.shape, photo.shape)
+        alpha = None if colour.alpha is None else colour.alpha[box.slices]
+        crop = replace(colour, pixels=colour.pixels[box.slices], alpha=alpha)
+        apply_change(crop, change, encoder_outputs["specular"][0], mask)
+        return (
+            *note_transparency(alpha, resize(skin, box.width, box.height), name),
+            *subject.notes,
+        )
+
+    def _encode(self, photo: NDArray[np.uint8], subject: Subject) -> _Arrays:
+        """Maps [1, h, w] of the subject's box, and its capture [1, ...], at the working size."""
+        size = self.encoder.working_size
+        cut = subject.crop.cut(photo, size)
+        encoder_outputs = self.encoder.run({"image": cut[None]})
+        return subject.keep_own_skin(subject.crop.turn_back(encoder_outputs, size))
 
     def _decode(self, encoder_outputs: _Arrays) -> NDArray[np.float32]:
         """The decoder's picture, sRGB [h, w, 3] in [0, 1]."""
@@ -250,7 +315,7 @@ class Decomposer:
         decoded = self._decode(encoder_outputs)
         maps = {name: encoder_outputs[name][0] for name in (*MAP_NAMES, "mask")}
         height, width = crop.shape[:2]
-        if not detail or max(height, width) <= self.encoder.working_size:
+        if not detail or max(height, width) <= max(decoded.shape[:2]):
             return enlarge_layers(maps, decoded, width, height)
         tops = {name: self.encoder.output_info[name].range[1] for name in MAP_NAMES}
         pigment_tops = tops["melanin"], tops["hemoglobin"]
@@ -258,15 +323,16 @@ class Decomposer:
         return sharpen_layers(crop, maps, decoded, table, tops["shading"], self.threads)
 
     def _compute_change(
-        self, encoder_outputs: _Arrays, melanin: float, hemoglobin: float
+        self, encoder_outputs: _Arrays, factors: Mapping[str, float]
     ) -> ColourChange:
         bare = dict(encoder_outputs) | {
             "shading": np.ones_like(encoder_outputs["shading"]),
             "specular": np.zeros_like(encoder_outputs["specular"]),
             "offset": np.zeros_like(encoder_outputs["offset"]),
         }
-        factors = {"melanin": np.float32(melanin), "hemoglobin": np.float32(hemoglobin)}
-        scaled = {name: np.clip(bare[name] * factor, 0, 1) for name, factor in factors.items()}
+        scaled = {
+            name: np.clip(bare[name] * np.float32(factor), 0, 1) for name, factor in factors.items()
+        }
         before, after = (srgb_to_linear(self._decode(maps)) for maps in (bare, bare | scaled))
         return compute_change(before, after, encoder_outputs["mask"][0])
 
@@ -288,21 +354,6 @@ def _check_factors(**factors: float) -> None:
                 f"{pigment} is multiplied by a number in [0, {MAX_FACTOR:g}]; got {factor:g}. "
                 "1 leaves it as it is, 2 doubles it."
             )
-
-
-def _choose_box(photo: NDArray[np.uint8], whole_image: bool, name: str) -> Box:
-    height, width = photo.shape[:2]
-    found = None if whole_image else choose_largest(find_faces(photo))
-    face = None if found is None else found.box
-    if face is None and not whole_image:
-        refuse_grey(photo, name)
-        raise NoFaceError(
-            f"No face was found in {name}. --whole-image "
-            "(in Python whole_image=True) decomposes it without a face."
-        )
-    box = Box(0, 0, width, height) if face is None else frame_head(face, width, height)
-    check_colour(photo, box, face, name)
-    return box
 
 
 def _as_picture(image: ImageLike) -> Picture:

@@ -42,6 +42,9 @@ class Decomposition:
         notes: Sentences that the user should read, such as what was assumed of the photograph.
         model: `version` and `trained_on` of the encoder, and `optics`, the preset of the skin's
             constants to which its fractions belong: `SkinDecoder(model["optics"])` renders them.
+        face_id: Number of the face, from 1, from left to right among all faces that were found in
+            the photograph; None if no face was looked for.
+        faces_found: Number of faces that were found in the photograph; None if none was looked for.
 
     Example:
         >>> from skimage.data import astronaut
@@ -64,6 +67,8 @@ class Decomposition:
     model: dict[str, str]
     colour_space: ColourSpace = ColourSpace("sRGB", "assumed")
     notes: tuple[str, ...] = ()
+    face_id: int | None = None
+    faces_found: int | None = None
 
     def __repr__(self) -> str:
         height, width = self.mask.shape
@@ -101,14 +106,17 @@ class Decomposition:
         """Summarise the maps over skin, with light and camera, as numbers for JSON.
 
         Returns:
-            `photo` (size), `colour_space` (`name`, `known_from`), `notes`, `box`, `skin_share`
-            (part of the box that is skin), `maps` (`unit`, `mean`, `std`, `p5` and `p95` of each;
-            None where there is no skin), `light`, `camera`, `version` and `model`.
+            `id` (of the face), `faces_found`, `photo` (size), `colour_space` (`name`,
+            `known_from`), `notes`, `box`, `skin_share` (part of the box that is skin), `maps`
+            (`unit`, `mean`, `std`, `p5` and `p95` of each; None where there is no skin), `light`,
+            `camera`, `version` and `model`.
         """
         skin = self.mask > SKIN_THRESHOLD
         height, width = skin.shape
         maps = {name: value for name, value in self.maps().items() if name != "mask"}
         return {
+            "id": self.face_id,
+            "faces_found": self.faces_found,
             "photo": {"width": width, "height": height},
             "colour_space": {
                 "name": self.colour_space.name,

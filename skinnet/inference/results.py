@@ -1,8 +1,9 @@
-"""The files of one decomposed photograph, which are written together or not at all."""
+"""The files of a decomposed photograph, which are written together or not at all."""
 
 import json
+from collections.abc import Callable, Sequence
 from pathlib import Path
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -15,6 +16,14 @@ from skinnet.inference.decomposition import Decomposition
 from skinnet.inference.panel import draw_panel
 
 _LEVELS = 65535
+
+
+class _Result(NamedTuple):
+    """A decomposition, how the names of its files begin, and the content of its JSON file."""
+
+    stem: str
+    decomposition: Decomposition
+    summary: dict[str, Any]
 
 
 def write_results(
@@ -56,24 +65,43 @@ def write_results(
         >>> write_results(folder, "a", photo, decomposition, decomposition.summary())
         11
     """
+    return _write_all(folder, [_Result(stem, decomposition, summary)], photo, digest)
+
+
+def _write_all(
+    folder: Path, results: Sequence[_Result], photo: NDArray[np.uint8], digest: str
+) -> int:
+    """Write the results of a photograph, all or none. Returns the number of files of each."""
     _make_folder(folder)
     try:
         with write_together() as temporary:
-            pictures = {
-                "panel": draw_panel(photo, decomposition),
-                "reconstruction": decomposition.reconstruction,
-            }
-            for name, picture in pictures.items():
-                text = Mark("predict", name, digest).to_text()
-                write_png(temporary(folder / f"{stem}_{name}.png"), picture, text)
-            for name in decomposition.maps():
-                path = temporary(folder / f"{stem}_{name}.png")
-                _write_map(path, name, decomposition, Mark("predict", "map", digest))
-            record = json.dumps(summary, indent=2, allow_nan=False)
-            write_text(temporary(folder / f"{stem}.json"), record + "\n")
+            for result in results:
+                _write_result(folder, result, photo, digest, temporary)
     except OSError as error:
         raise _describe_fault(folder, error) from error
-    return len(_list_ends(decomposition))
+    return len(_list_ends(results[0].decomposition))
+
+
+def _write_result(
+    folder: Path,
+    result: _Result,
+    photo: NDArray[np.uint8],
+    digest: str,
+    temporary: Callable[[Path], Path],
+) -> None:
+    stem, decomposition, summary = result
+    pictures = {
+        "panel": draw_panel(photo, decomposition),
+        "reconstruction": decomposition.reconstruction,
+    }
+    for name, picture in pictures.items():
+        text = Mark("predict", name, digest).to_text()
+        write_png(temporary(folder / f"{stem}_{name}.png"), picture, text)
+    for name in decomposition.maps():
+        path = temporary(folder / f"{stem}_{name}.png")
+        _write_map(path, name, decomposition, Mark("predict", "map", digest))
+    record = json.dumps(summary, indent=2, allow_nan=False)
+    write_text(temporary(folder / f"{stem}.json"), record + "\n")
 
 
 def _make_folder(folder: Path) -> Path:
@@ -89,6 +117,20 @@ def _describe_fault(folder: Path, error: OSError) -> InputError:
     return InputError(
         f"{folder} cannot be written ({error.strerror}); choose another folder with -o."
     )
+
+
+def _name_part(decomposition: Decomposition, count: int) -> str:
+    """What the names of a face's files have after the photograph's, if it is one of several."""
+    return f"_face{decomposition.face_id}" if count > 1 else ""
+
+
+def _list_all_ends(decompositions: Sequence[Decomposition]) -> list[str]:
+    """List the ends of the names of all files of a photograph."""
+    return [
+        _name_part(each, len(decompositions)) + end
+        for each in decompositions
+        for end in _list_ends(each)
+    ]
 
 
 def _list_ends(decomposition: Decomposition) -> list[str]:

@@ -153,7 +153,7 @@ def test_without_a_face_the_option_is_named(
     assert predict(wall) == 2
     assert names(tmp_path) == ["wall.png"]
     assert f"No face was found in {wall}" in (err := capsys.readouterr().err)
-    assert "--whole-image" in err
+    assert "--region skin" in err
     assert predict(wall, "--whole-image") == 0
 
 
@@ -229,7 +229,7 @@ def test_edit_says_what_the_format_cannot_hold(
     edit: Predict, photo: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
     cut_out = np.dstack([pixels(photo), np.zeros((256, 256), np.uint8)])
-    cut_out[:, 40:, 3] = 255
+    cut_out[:, 20:, 3] = 255
     Image.fromarray(cut_out).save(photo)
     assert edit(photo, "--melanin", "2") == 0
     assert capsys.readouterr().err == ""

@@ -62,7 +62,7 @@ def test_paths_images_and_arrays_give_the_same(
 def test_without_a_face_nothing_is_guessed(decomposer: Decomposer, tmp_path: Path) -> None:
     wall = np.full((90, 120, 3), (220, 180, 160), np.uint8)
     Image.fromarray(wall).save(tmp_path / "wall.png")
-    with pytest.raises(NoFaceError, match=r"wall\.png\. .*--whole-image .*whole_image=True"):
+    with pytest.raises(NoFaceError, match=r"wall\.png\. .*--region skin .*region='skin'"):
         decomposer(tmp_path / "wall.png")
     with pytest.raises(NoFaceError, match="No face was found in the image"):
         decomposer.edit(wall, 2.0)

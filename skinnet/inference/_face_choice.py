@@ -1,0 +1,46 @@
+"""Which of the faces of a photograph are read."""
+
+import operator
+from collections.abc import Sequence
+from typing import Literal
+
+from skinnet.errors import InputError
+from skinnet.images.faces.face import Face
+
+FaceChoice = Literal["all", "largest"] | int
+"""All faces, the largest one, or a number of the largest."""
+
+
+def check_choice(faces: FaceChoice) -> None:
+    """Raise `InputError` if `faces` is neither a word that is known nor a number of faces."""
+    if faces in ("all", "largest"):
+        return
+    try:
+        count = 0 if isinstance(faces, bool | str) else operator.index(faces)
+    except TypeError:
+        count = 0
+    if count < 1:
+        raise InputError(
+            f"faces is all, largest, or how many of the largest, from 1; got {faces!r}."
+        )
+
+
+def choose_faces(found: Sequence[Face], faces: FaceChoice) -> list[int]:
+    """Indices of the faces that are read, in their order; of faces of one size, the first."""
+    if faces == "all":
+        return list(range(len(found)))
+    count = 1 if faces == "largest" else int(faces)
+    by_size = sorted(range(len(found)), key=lambda index: -found[index].box.width)
+    return sorted(by_size[:count])
+
+
+def note_others(found: int, read: int, name: str) -> tuple[str, ...]:
+    """Note how many faces were found and are not read."""
+    more = found - read
+    if more < 1:
+        return ()
+    faces, them = ("face was", "it") if more == 1 else ("faces were", "them")
+    return (
+        f"{more} more {faces} found in {name}; --faces all "
+        f'(in Python faces="all") reads {them} too.',
+    )

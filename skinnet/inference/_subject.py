@@ -1,0 +1,119 @@
+"""What is read in a photograph: some of its faces, or bare skin."""
+
+from collections.abc import Sequence
+from typing import Literal, NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from skinnet.errors import InputError, NoFaceError
+from skinnet.images._colour_content import check_colour, refuse_grey
+from skinnet.images.box import Box
+from skinnet.images.faces.face import Face
+from skinnet.images.faces.finder import find_faces
+from skinnet.inference._face_choice import FaceChoice, check_choice, choose_faces, note_others
+from skinnet.inference._head_crop import Arrays, HeadCrop, crop_head, place_face
+
+Region = Literal["face", "skin"]
+"""Faces, or whatever skin the photograph shows."""
+
+_BARE_SKIN = (
+    "The whole image was read, without a search for a face. The network learnt from faces: melanin "
+    "of a bare patch of skin can be a third more or less than that of the same skin in its face."
+)
+
+_COLOUR_SIZE = 512
+"""Largest size, in pixels, at which the colours of a turned head are judged."""
+
+
+class Subject(NamedTuple):
+    """A face that is read, or the whole photograph.
+
+    Attributes:
+        crop: The part of the photograph that is read.
+        face: The face in it; None if none was looked for.
+        face_id: Number of the face, from 1, from left to right among all faces of the photograph.
+        faces: All faces of the photograph, from left to right; None if none was looked for.
+        notes: Sentences that the user should read.
+    """
+
+    crop: HeadCrop
+    face: Face | None = None
+    face_id: int | None = None
+    faces: Sequence[Face] | None = None
+    notes: tuple[str, ...] = ()
+
+    def keep_own_skin(self, outputs: Arrays) -> dict[str, NDArray[np.float32]]:
+        """Set the mask to 0 where another face is nearer, measured in sides of each face."""
+        mask = outputs["mask"]
+        others = [face for face in self.faces or () if face is not self.face]
+        if self.face is None or not others:
+            return dict(outputs)
+        distance = [_measure_distance(face, self.crop.box, mask.shape[1:]) for face in others]
+        own = _measure_distance(self.face, self.crop.box, mask.shape[1:]) <= np.min(distance, 0)
+        return dict(outputs) | {"mask": mask * own.astype(np.float32)}
+
+
+def find_subjects(
+    photo: NDArray[np.uint8], name: str, faces: FaceChoice | None, region: Region
+) -> list[Subject]:
+    """Find what is to be read in a photograph, from left to right.
+
+    Args:
+        photo: uint8 sRGB [H, W, 3].
+        name: Its name in messages.
+        faces: The faces that are asked for; None for the largest.
+        region: "skin" to read the whole photograph, without a search for a face.
+
+    Raises:
+        InputError: An argument is none of those, or the photograph has no colour.
+        NoFaceError: No face was found.
+    """
+    check_choice("largest" if faces is None else faces)
+    if region not in ("face", "skin"):
+        raise InputError(f"region is face or skin; got {region!r}.")
+    if region == "face":
+        return _find_face_subjects(photo, name, "largest" if faces is None else faces)
+    if faces not in (None, "largest"):
+        raise InputError(
+            f"faces={faces!r} is asked for, but region='skin' looks for no face; leave out one."
+        )
+    box = Box(0, 0, photo.shape[1], photo.shape[0])
+    check_colour(photo, box, None, name)
+    return [Subject(HeadCrop(box), notes=(_BARE_SKIN,))]
+
+
+def _find_face_subjects(photo: NDArray[np.uint8], name: str, faces: FaceChoice) -> list[Subject]:
+    found = find_faces(photo)
+    if not found:
+        refuse_grey(photo, name)
+        raise NoFaceError(
+            f"No face was found in {name}. --region skin (in Python region='skin') reads skin "
+            "without a face."
+        )
+    chosen = choose_faces(found, faces)
+    notes = note_others(len(found), len(chosen), name)
+    subjects = []
+    for index in chosen:
+        crop = crop_head(found[index], photo.shape)
+        _check_face_colour(photo, crop, found[index], name)
+        subjects.append(Subject(crop, found[index], index + 1, found, notes))
+    return subjects
+
+
+def _check_face_colour(photo: NDArray[np.uint8], crop: HeadCrop, face: Face, name: str) -> None:
+    if crop.square is None:
+        check_colour(photo, crop.box, face.box, name)
+        return
+    size = min(round(crop.square.side), _COLOUR_SIZE)
+    upright = crop.square.cut(photo, size)
+    check_colour(upright, Box(0, 0, size, size), place_face(size), name)
+
+
+def _measure_distance(face: Face, box: Box, shape: tuple[int, ...]) -> NDArray[np.float64]:
+    """Distances [h, w] of a grid's pixels over a box from a face, in sides of the face."""
+    x = box.left + (np.arange(shape[1]) + 0.5) * box.width / shape[1]
+    y = box.top + (np.arange(shape[0]) + 0.5) * box.height / shape[0]
+    middle = face.box.left + face.box.right, face.box.top + face.box.bottom
+    distance: NDArray[np.float64] = np.hypot(x - middle[0] / 2, y[:, None] - middle[1] / 2)
+    return distance / face.box.width
