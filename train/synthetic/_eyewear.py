@@ -6,7 +6,7 @@ from jaxtyping import Float
 from train.synthetic._shell import make_sheet
 from train.synthetic.glasses import Frame, make_frame, place_rim
 from train.synthetic.labelled_mesh import LabelledMesh, join
-from train.synthetic.labels import LENS
+from train.synthetic.labels import CLEAR_LENS, LENS
 
 SUNGLASSES_SHARE = 0.35
 
@@ -25,7 +25,7 @@ def make_eyewear(
         rng: Random numbers.
 
     Returns:
-        The frame, and lenses that hide what is behind them.
+        The frame and its lenses, dark or clear.
     """
     radius = rng.uniform(*_RADII[rng.choice(3, p=(0.2, 0.5, 0.3))])
     dark = rng.random() < SUNGLASSES_SHARE
@@ -33,12 +33,12 @@ def make_eyewear(
     frame = Frame(rng.uniform(0.2, 0.3), height, rng.uniform(1.9, 4.5), radius)
     rim = place_rim(skin, eyes, frame)
     parts = [make_frame(skin, rim, frame)]
-    if dark:
-        parts += [_make_lens(rim * side) for side in ([1, 1, 1], [-1, 1, 1])]
+    label = LENS if dark else CLEAR_LENS
+    parts += [_make_lens(rim * side, label) for side in ([1, 1, 1], [-1, 1, 1])]
     return join(parts)
 
 
-def _make_lens(rim: Float[np.ndarray, "points 3"]) -> LabelledMesh:
+def _make_lens(rim: Float[np.ndarray, "points 3"], label: int) -> LabelledMesh:
     """Fill a rim with a lens that bulges a little; its chart is 1 at the rim."""
     share = np.linspace(0, 1, 9)[:, None]
     middle = (rim.min(0) + rim.max(0)) / 2
@@ -46,4 +46,4 @@ def _make_lens(rim: Float[np.ndarray, "points 3"]) -> LabelledMesh:
     points[..., 2] += 0.035 * (1 - share**2)
     half = (rim.max(0) - rim.min(0))[:2] / 2
     x, y = np.moveaxis((points - middle)[..., :2] / half, -1, 0)
-    return make_sheet(points, LENS, x, y)
+    return make_sheet(points, label, x, y)

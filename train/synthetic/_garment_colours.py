@@ -3,6 +3,7 @@
 from typing import NamedTuple
 
 import torch
+import torch.nn.functional as F
 from jaxtyping import Float, Int
 from torch import Tensor
 
@@ -11,6 +12,9 @@ from train.synthetic.scene import FaceParameters, GarmentParameters
 
 _WOVEN = 0.06
 """Standard deviation of the log brightness of threads."""
+
+_LENS_REFLECTANCE = 0.02
+"""Of a coated lens, from both of its sides."""
 
 _SCALE = (torch.pi, 1.6)
 """Extent of the noise of a pattern on the chart."""
@@ -118,3 +122,26 @@ def _colour_lens(garments: GarmentParameters, pixels: _Pixels) -> _Colours:
 def _colour_beard(face: FaceParameters, pixels: _Pixels) -> _Colours:
     hairs = _sample_noise(face.beard_style.hairs[:, 0], pixels, (2.0, 1.5))
     return face.beard_style.colour[pixels.picture] * (0.4 * hairs[:, None]).exp()
+
+
+def reflect_in_lenses(
+    garments: GarmentParameters,
+    first: Int[Tensor, "batch"],
+    sky: Float[Tensor, "batch 9"],
+    film: Float[Tensor, "batch 1 height width"],
+) -> Float[Tensor, "batch 1 height width"]:
+    """Reflect the sky, and windows as blots, in clear lenses.
+
+    Args:
+        garments: Of all paintings.
+        first: The first painting of each picture.
+        sky: As in `LightParameters`.
+        film: 1 where there is a clear lens, otherwise 0.
+
+    Returns:
+        Light relative to a white diffuser that faces the light.
+    """
+    noise = garments.noise[first, :1]
+    blots = F.interpolate(noise, film.shape[-2:], mode="bicubic", align_corners=True)
+    windows = torch.sigmoid(6 * (blots - 0.9)) * garments.reflection[first, None, None, None]
+    return film * sky[:, :1, None, None].clamp_min(0) * (_LENS_REFLECTANCE + windows)

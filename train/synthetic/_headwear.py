@@ -114,7 +114,7 @@ def make_veil(surface: HeadSurface, neck: Neck, rng: np.random.Generator) -> Lab
         up = (elevation + sag - middle) / ((high - low) / 2)
         return np.asarray(np.abs(azimuth / wide) ** 4 + np.abs(up) ** 3 - 1)
 
-    return _make_hood(surface, neck, rng, measure, 0.03)
+    return _make_hood(surface, neck, rng, measure, 0.03, rng.uniform(0.1, 0.25))
 
 
 def make_balaclava(surface: HeadSurface, neck: Neck, rng: np.random.Generator) -> LabelledMesh:
@@ -177,20 +177,25 @@ def _make_hood(
     rng: np.random.Generator,
     measure: Callable[[Grid, Grid], Grid],
     loose: float,
+    hang: float = 0.0,
 ) -> LabelledMesh:
     """Make cloth over head, neck and shoulders with an opening where `measure` is negative."""
     azimuth = np.linspace(-np.pi, np.pi, 161)[None]
     lowest = -1.0 - 0.12 * np.cos(azimuth)
     elevation = np.pi / 2 + (lowest - np.pi / 2) * np.linspace(0, 1, 90)[:, None]
     azimuth, elevation = np.broadcast_arrays(azimuth, elevation)
-    off = 0.03 + loose
+    off = 0.04 + loose
     outside = measure(azimuth, elevation)
     # The edge lies on the skin, so that nobody looks under the cloth.
     lift = 1 - np.exp(-outside.clip(0) / 0.12)
     head = stretch(surface.place(azimuth, elevation), 0.012 + off * lift, 150, outside < 0.1)
     waves = sample_waves(rng, azimuth, elevation, (4.0, 3.0))
     head = move_out(head, loose * (1 - np.exp(-outside.clip(0) / 0.4)) * (1 + 0.7 * waves))
-    drape = _drape(head[-1], azimuth[0], neck, rng, 0.35 if loose else 0.05)
+    # A veil falls from the nose, not along lips and chin.
+    front = np.exp(-((azimuth / 0.75) ** 4))
+    fall = 1 / (1 + np.exp((elevation + 0.62) / 0.09))
+    head = move_out(head, hang * front * fall * (1 + 0.25 * waves))
+    drape = _drape(head[-1], azimuth[0], neck, rng, 0.35 if loose else 0.05, hang)
     points = np.concatenate([head, drape])
     below = elevation[-1:] + np.linspace(-0.02, -1.0, len(drape))[:, None]
     heights = np.concatenate([elevation, below])
@@ -201,7 +206,12 @@ def _make_hood(
 
 
 def _drape(
-    ring: np.ndarray, azimuth: np.ndarray, neck: Neck, rng: np.random.Generator, spread: float
+    ring: np.ndarray,
+    azimuth: np.ndarray,
+    neck: Neck,
+    rng: np.random.Generator,
+    spread: float,
+    hang: float,
 ) -> Points:
     """Cloth that falls from a ring around the head over neck and shoulders, with folds."""
     share = np.linspace(0, 1, 40)[1:, None]
@@ -211,7 +221,8 @@ def _drape(
     deep = neck.half_depth + 0.06 + 0.12 * loose + (0.6 * spread + 0.25 * loose) * share**1.2
     folds = sample_waves(rng, azimuth[None], share, (9.0, 2.5)) * (0.01 + 0.12 * spread) * share
     x = neck.x + (wide + folds) * np.sin(azimuth)
-    z = neck.z + (deep + folds) * np.cos(azimuth)
+    ahead = 1.6 * hang * np.exp(-((azimuth / 0.75) ** 4))
+    z = neck.z + (deep + folds) * np.cos(azimuth) + ahead
     y = ring[:, 1] * (1 - share) + low * share
     blend = (1 - np.exp(-share / 0.2)) / (1 - np.exp(-1 / 0.2))
     return np.stack(

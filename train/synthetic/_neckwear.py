@@ -28,13 +28,14 @@ def make_scarf(neck: Neck, rng: np.random.Generator) -> LabelledMesh:
 def make_roll_neck(neck: Neck, rng: np.random.Generator) -> LabelledMesh:
     """Make the roll-neck of a pullover."""
     azimuth, down = np.meshgrid(np.linspace(-np.pi, np.pi, 161), np.linspace(0, 1, 40))
-    top = rng.uniform(-1.1, -0.92) - 0.1 * np.cos(azimuth)
+    top = rng.uniform(-0.98, -0.82) - 0.12 * np.cos(azimuth)
     rim = np.sin(np.pi * down.clip(0, 0.5)) ** 0.5
     ribs = 0.006 * np.cos(70 * azimuth) + 0.01 * sample_waves(rng, azimuth, down, (2, 5))
-    off = 0.02 + 0.05 * rim + ribs - 0.25 * (down - 0.5).clip(0)
-    x = neck.x + (neck.half_width + off) * np.sin(azimuth)
-    z = neck.z + (neck.half_depth + off) * np.cos(azimuth)
-    y = top + (-1.5 - top) * down
+    off = 0.06 + 0.05 * rim + ribs
+    slim = 0.84 + 0.2 * down
+    x = neck.x + (slim * neck.half_width + off) * np.sin(azimuth)
+    z = neck.z + (slim * neck.half_depth + off) * np.cos(azimuth)
+    y = top + (-1.4 - top) * down
     return make_sheet(np.stack([x, y, z], -1), SCARF, azimuth, y)
 
 

@@ -38,7 +38,11 @@ class HeadSurface:
         azimuth, elevation = np.broadcast_arrays(azimuth, elevation)
         distance, index = tree.query(_embed(azimuth, elevation), _NEIGHBOURS)
         weight = np.asarray(1 / (distance + 1e-3) ** 2)
-        return np.asarray((vertices[index] * weight[..., None]).sum(-2) / weight.sum(-1)[..., None])
+        index = np.asarray(index)
+        points = (vertices[index] * weight[..., None]).sum(-2) / weight.sum(-1)[..., None]
+        # A mean of neighbours lies under the tip of a nose.
+        farthest = np.linalg.norm(vertices[index[..., :3]], axis=-1).max(-1)
+        return np.asarray(points * (farthest / np.linalg.norm(points, axis=-1))[..., None])
 
 
 def _embed(

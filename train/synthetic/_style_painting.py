@@ -29,7 +29,8 @@ def list_styled_layers(
 
     Args:
         face: A batch.
-        layers: Colour and opacity of each layer, from the skin outwards.
+        layers: Colour and opacity of each layer, from the skin outwards; the first is lipstick,
+            which here ends at the lips' edge.
         beard: Result of `cover_with_style`.
         azimuth: Of the chart's columns in radians.
         elevation: Of its rows.
@@ -42,7 +43,8 @@ def list_styled_layers(
     lashes = _line_eyes(azimuth.abs(), elevation) * expand_scalar(make_up.eyeliner)
     return [
         *_list_make_up(make_up, azimuth, elevation),
-        *layers,
+        (layers[0][0], _find_lips(azimuth.abs(), elevation) * expand_scalar(face.features.make_up)),
+        *layers[1:],
         (torch.full_like(hairs[:, :, :1, :1], 0.012), lashes),
         (hairs, beard),
         (expand_colour(make_up.paint_colour), _paint(make_up, azimuth, elevation)),
@@ -102,7 +104,7 @@ def _find_parts(
 ) -> tuple[Tensor, Tensor, Tensor, Tensor]:
     """Shares of cheeks and jaw, of the chin, of the moustache and of the bridge between them."""
     line = -0.62 + expand_scalar(style.cheek_line) + 0.48 * (side - 0.3).clamp_min(0)
-    under = soft_step(height + 1.27, 0.1)
+    under = soft_step(height + 1.2, 0.08)
     ears = soft_step(1.44 - side, 0.06) * soft_step(0.12 - height, 0.1)
     cheeks = soft_step(line - height, 0.09) * ears * under * soft_step(side - 0.2, 0.1)
     chin = soft_step(0.3 - side, 0.09) * soft_step(-0.755 - height, 0.05) * under
@@ -124,6 +126,15 @@ def _list_make_up(make_up: CosmeticParameters, azimuth: Tensor, elevation: Tenso
         (expand_colour(make_up.blush_colour), expand_scalar(make_up.blush) * cheeks),
         (expand_colour(make_up.eye_shadow_colour), expand_scalar(make_up.eye_shadow) * lids),
     ]
+
+
+def _find_lips(side: Tensor, elevation: Tensor) -> Tensor:
+    """Lips with a sharp edge, and a dip in the middle of the upper one."""
+    round_ = (1 - (side / 0.205) ** 2).clamp_min(0)
+    dip = 0.014 * torch.exp(-((side / 0.035) ** 2))
+    top, bottom = -0.655 + 0.062 * round_**0.75 - dip, -0.655 - 0.086 * round_**0.8
+    inside = torch.minimum(top - elevation, elevation - bottom)
+    return soft_step(inside, 0.014) * soft_step(0.205 - side, 0.01)
 
 
 def _line_eyes(side: Tensor, elevation: Tensor) -> Tensor:

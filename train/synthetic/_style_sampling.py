@@ -62,6 +62,7 @@ def make_no_style() -> tuple[BeardStyleParameters, CosmeticParameters, GarmentPa
             colour,
             colour,
             zero,
+            zero,
         ),
     )
 
@@ -90,6 +91,18 @@ def add_style(face: FaceParameters, rng: np.random.Generator) -> FaceParameters:
         cosmetics=_sample_cosmetics(rng, made_up),
         garments=_sample_garments(rng),
     )
+
+
+def fit_long_beard(face: FaceParameters) -> FaceParameters:
+    """Let a full beard grow around the long one of a mesh."""
+    style = face.beard_style
+    full = style._replace(
+        parts=torch.ones(4),
+        cheek_line=style.cheek_line.clamp(-0.02, 0.06),
+        beard=style.beard.clamp_min(0.9),
+    )
+    bare = face.features.make_up * 0
+    return face._replace(beard_style=full, features=face.features._replace(make_up=bare))
 
 
 def _sample_beard(
@@ -176,6 +189,7 @@ def _sample_garments(rng: np.random.Generator) -> GarmentParameters:
             own_skin=rng.random(3) < OWN_SKIN_SHARE,
             lens=tint * np.exp(rng.uniform(np.log(0.006), np.log(0.06))),
             mirror=mirror,
+            reflection=rng.choice([0.0, 0.5], p=(0.4, 0.6)) * rng.random() ** 2,
         )
     )
 

@@ -7,6 +7,7 @@ import numpy as np
 
 from train.synthetic import _headwear, _neckwear
 from train.synthetic._face_masks import make_face_mask
+from train.synthetic._long_beards import make_long_beard
 from train.synthetic._shell import HeadSurface
 from train.synthetic.body import Neck
 from train.synthetic.labelled_mesh import LabelledMesh
@@ -26,6 +27,9 @@ GLASSES_SHARE = 0.25
 
 NECKWEAR_SHARES = {"none": 0.58, "collar": 0.2, "roll-neck": 0.09, "scarf": 0.13}
 """Of heads without a hood."""
+
+LONG_BEARD_SHARE = 0.06
+"""Of heads with neither a hood nor a mask; their scenes paint a full beard around it."""
 
 _Crown = Callable[[HeadSurface, np.random.Generator], LabelledMesh]
 _Hood = Callable[[HeadSurface, Neck, np.random.Generator], LabelledMesh]
@@ -51,12 +55,13 @@ _NECKWEAR: dict[str, _Neckwear] = {
 
 
 class Wardrobe(NamedTuple):
-    """Names of headwear and neckwear, and whether there are glasses and a mask."""
+    """Names of headwear and neckwear, and whether there are glasses, a mask and a long beard."""
 
     headwear: str
     neckwear: str
     glasses: bool
     face_mask: bool
+    long_beard: bool
 
 
 def sample_wardrobe(rng: np.random.Generator) -> Wardrobe:
@@ -64,10 +69,10 @@ def sample_wardrobe(rng: np.random.Generator) -> Wardrobe:
     headwear = _choose(HEADWEAR_SHARES, rng)
     neckwear = _choose(NECKWEAR_SHARES, rng)
     glasses, face_mask = rng.random() < GLASSES_SHARE, rng.random() < FACE_MASK_SHARE
-    hood, hidden = headwear in HOODS, headwear in ("veil", "balaclava")
-    return Wardrobe(
-        headwear, "none" if hood else neckwear, bool(glasses), bool(face_mask and not hidden)
-    )
+    hood = headwear in HOODS
+    masked = bool(face_mask and headwear not in ("veil", "balaclava"))
+    bearded = bool(rng.random() < LONG_BEARD_SHARE and not (hood or masked))
+    return Wardrobe(headwear, "none" if hood else neckwear, bool(glasses), masked, bearded)
 
 
 def make_garments(
@@ -91,6 +96,8 @@ def make_garments(
         parts.append(_HOODS[wardrobe.headwear](surface, neck, rng))
     if wardrobe.face_mask:
         parts.append(make_face_mask(surface, rng))
+    if wardrobe.long_beard:
+        parts.append(make_long_beard(surface, rng))
     if wardrobe.neckwear in _NECKWEAR:
         parts.append(_NECKWEAR[wardrobe.neckwear](neck, rng))
     return parts

@@ -8,7 +8,7 @@ from train.synthetic.bare_skin import Shot, make_skin_scene
 from train.synthetic.framing import Kind, make_view, sample_framing, sample_kind
 from train.synthetic.head_cast import HeadCast, cast_view
 from train.synthetic.labelled_mesh import LabelledMesh
-from train.synthetic.labels import BODY, EYE, MATERIALS, MOUTH, SKIN, TEETH
+from train.synthetic.labels import BODY, EYE, FILM, MATERIALS, MOUTH, SKIN, TEETH
 from train.synthetic.people import MakeHead, make_group, make_person, sample_group
 
 _TRIES = 20
@@ -51,7 +51,7 @@ _SAMPLERS = {"face": _sample_face, "group": _sample_group, "skin": make_skin_sce
 
 def _shows_skin(cast: HeadCast, kind: Kind) -> bool:
     """Whether enough skin is seen, and of pictures of skin no eye or mouth."""
-    material = cast.label % MATERIALS
+    material = cast.label % FILM
     if kind != "skin":
         return bool((material == SKIN).mean() > _LEAST_SKIN)
     features = np.isin(material, (EYE, TEETH, MOUTH)).mean()

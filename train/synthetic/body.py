@@ -76,7 +76,8 @@ def _make_clothes(
     width, depth = rng.uniform(0.5, 1.1), rng.uniform(0.0, 0.55) * (not closed)
     front = np.abs(azimuth) / width
     pointed, round_ = (1 - front).clip(0), np.exp(-(front**2) * 1.5)
-    collar = rng.uniform(0.04, 0.2) + depth * (pointed if rng.random() < 0.5 else round_)
+    lowest = rng.uniform(0.04, 0.2) * (not closed)
+    collar = lowest + depth * (pointed if rng.random() < 0.5 else round_)
     share = np.linspace(0, 1, _STEPS)[:, None] ** 1.3
     along = collar.clip(max=0.95) * (1 - share) + 2 * share
     points = _place_on_torso(neck, torso, along, azimuth + 0 * along, rng.uniform(0.02, 0.05))

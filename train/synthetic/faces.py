@@ -13,10 +13,11 @@ from skinnet.physics import SkinDecoder
 from train.batch import Batch
 from train.preset import check_preset
 from train.stream import StreamLoader, count_seen_samples
+from train.synthetic._style_sampling import fit_long_beard
 from train.synthetic.body_sampling import sample_body
 from train.synthetic.head_cache import SPLITS, load_or_cast_heads
 from train.synthetic.head_cast import HeadCast
-from train.synthetic.labels import BODY, MATERIALS
+from train.synthetic.labels import BEARD, BODY, MATERIALS
 from train.synthetic.measured_skins import MeasuredSkins
 from train.synthetic.model_skins import ModelSkins, apply_model_skin, load_model_skins
 from train.synthetic.paintings import collate_scenes, stack
@@ -94,6 +95,9 @@ class SyntheticScenes(Dataset[SceneParameters]):
         people = {0: (scene.face, scene.surroundings)}
         for person in {one % BODY for one in numbers} - {0}:
             people[person] = self._sample_person([*key, 4, person])
+        for person, (face, clothes) in people.items():
+            if bool((scene.head.label == BEARD + MATERIALS * person).any()):
+                people[person] = fit_long_beard(face), clothes
         faces, surroundings = zip(*(people[one % BODY] for one in numbers), strict=True)
         skins = [
             sample_body(np.random.default_rng([*key, 3, one]), face) if one >= BODY else face

@@ -4,7 +4,7 @@ from typing import NamedTuple
 
 import numpy as np
 import torch
-from jaxtyping import Float, Float16, Int8, UInt8, UInt64
+from jaxtyping import Bool, Float, Float16, Int8, UInt8, UInt64
 
 from skinnet.mesh import Mesh
 from skinnet.render import (
@@ -16,6 +16,7 @@ from skinnet.render import (
 )
 from train.synthetic.directions import LIGHT_DIRECTIONS
 from train.synthetic.labelled_mesh import LabelledMesh
+from train.synthetic.labels import BACKGROUND, CLEAR_LENS, FILM, MATERIALS
 from train.synthetic.scene import HeadBuffers
 
 _ANGLE_SD, _MAX_ANGLE = (0.12, 0.35, 0.10), 0.6
@@ -112,6 +113,9 @@ def cast_view(
     Returns:
         Its buffers.
     """
+    clear = head.label % MATERIALS == CLEAR_LENS
+    if clear.any():
+        return _cast_behind(head, clear, view)
     surface = trace_geometry(scene, view)
     cast = make_blank_cast(view.size[0])
     hit = surface.hit
@@ -121,6 +125,33 @@ def cast_view(
     values = cast_surface(surface, view.rotation)
     cast.normal[hit], cast.sky_visibility[hit], cast.visibility_mask[hit] = values
     return cast
+
+
+def _cast_behind(
+    head: LabelledMesh,
+    clear: Bool[np.ndarray, "triangles"],
+    view: OrthographicView | PerspectiveView,
+) -> HeadCast:
+    """Cast what is seen through clear lenses, whose label is then `FILM` more."""
+    parts = [
+        LabelledMesh(head.vertices, head.triangles[chosen], head.label[chosen], head.chart)
+        for chosen in (~clear, clear)
+    ]
+    rest, lenses = (Scene(Mesh(part.vertices, part.triangles)) for part in parts)
+    cast = cast_view(parts[0], rest, view)
+    before = _measure_height(lenses, view) > _measure_height(rest, view)
+    cast.label[before & (cast.label % MATERIALS > BACKGROUND)] += FILM
+    return cast
+
+
+def _measure_height(
+    scene: Scene, view: OrthographicView | PerspectiveView
+) -> Float[np.ndarray, "size size"]:
+    """Place of the surface along the camera's axis, towards the camera."""
+    surface = trace_geometry(scene, view)
+    height = np.full(view.size, -np.inf)
+    height[surface.hit] = surface.position @ view.rotation[2]
+    return height
 
 
 def cast_surface(surface: GeometryBuffers, axes: Float[np.ndarray, "3 3"]) -> SurfaceCast:

@@ -11,9 +11,10 @@ from skinnet.network.autoencoder import SHADING_MAX, SkinMaps
 from skinnet.physics import Capture, SkinDecoder, luminance
 from skinnet.shape._procedural_head import CHART_EXTENT
 from train.batch import Batch
+from train.synthetic._garment_colours import reflect_in_lenses
 from train.synthetic.body_painting import paint_body
 from train.synthetic.face_painting import FaceCharts, paint_face
-from train.synthetic.labels import BODY, MATERIALS, SKIN
+from train.synthetic.labels import BODY, FILM, MATERIALS, SKIN
 from train.synthetic.materials import OIL, colour_materials
 from train.synthetic.paintings import Paintings, find_paintings, merge_paintings
 from train.synthetic.scene import (
@@ -61,7 +62,8 @@ def render(scene: SceneParameters, decoder: SkinDecoder, split: str = "train") -
     head, paintings = scene.head, find_paintings(scene.head.label)
     matrix, capture = simulate_sensor(scene.light, scene.camera, decoder.camera, split)
     surface = _paint(scene, paintings, decoder, matrix)
-    material = (head.label % MATERIALS)[:, None]
+    material = (head.label % FILM)[:, None]
+    film = (head.label % MATERIALS >= FILM)[:, None].float()
     skin = (material == SKIN).float()
     first = map_tensors(lambda value: value[paintings.first], scene.face.skin.specular)
     shading = shade(
@@ -80,7 +82,11 @@ def render(scene: SceneParameters, decoder: SkinDecoder, split: str = "train") -
     visible = VisibleSkin(
         surface.melanin[:, 0], surface.hemoglobin[:, 0], surface.albedo, share, shading
     )
-    return develop(scene.camera, visible, (1 - share) * other, white, capture)
+    rest = (1 - share) * other
+    if film.any():
+        reflected = reflect_in_lenses(scene.face.garments, paintings.first, scene.light.sky, film)
+        rest = rest + reflected * white
+    return develop(scene.camera, visible, rest, white, capture)
 
 
 class _Surface(NamedTuple):
@@ -105,7 +111,7 @@ def _paint(
     matrix: Float[Tensor, "batch wavelength 3"],
 ) -> _Surface:
     picture, skin = paintings.picture, scene.face.skin
-    label = (scene.head.label % MATERIALS)[picture, None].float()
+    label = (scene.head.label % FILM)[picture, None].float()
     place = scene.head.chart.movedim(-1, 1).float()[picture]
     charts = _sample_charts(_paint_charts(scene.face, paintings.number), place)
     varied = any(bool(deviation.any()) for deviation in skin.nuisance)

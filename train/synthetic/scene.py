@@ -174,7 +174,8 @@ class GarmentParameters(NamedTuple):
     `colours` (linear sRGB) are two of each garment. Its pattern mixes them by two waves and by
     noise: `waves` holds radians of phase over one unit of the chart and the phase, `amounts` the
     weights of both waves and of noise. `own_skin` is 1 for cloth of the colour of the wearer's
-    skin. `mirror` in [0, 1] is how much a dark lens reflects.
+    skin. `mirror` in [0, 1] is how much a dark lens reflects, and `reflection` how bright a
+    window is in a clear one.
     """
 
     colours: Float[Tensor, "*batch {GARMENTS} 2 3"]
@@ -184,6 +185,7 @@ class GarmentParameters(NamedTuple):
     own_skin: Float[Tensor, "*batch {GARMENTS}"]
     lens: Float[Tensor, "*batch 3"]
     mirror: Float[Tensor, "*batch"]
+    reflection: Float[Tensor, "*batch"]
 
 
 class FaceParameters(NamedTuple):

@@ -6,7 +6,7 @@ from jaxtyping import Float
 
 from skinnet.physics import LIGHTS
 from train.synthetic.face_sampling import make_tensors, sample_face
-from train.synthetic.labels import MATERIALS, SKIN
+from train.synthetic.labels import FILM, SKIN
 from train.synthetic.scene import (
     LAMPS,
     CameraParameters,
@@ -172,7 +172,7 @@ def meter_skin(camera: CameraParameters, head: HeadBuffers) -> CameraParameters:
     Returns:
         The camera with more metering and less error of exposure.
     """
-    share = (head.label % MATERIALS == SKIN).float().mean()
+    share = (head.label % FILM == SKIN).float().mean()
     return camera._replace(
         exposure=camera.exposure ** (1 - 0.5 * share),
         metering=camera.metering.lerp(torch.ones(()), share),
