@@ -140,7 +140,7 @@ def _cast_behind(
     rest, lenses = (Scene(Mesh(part.vertices, part.triangles)) for part in parts)
     cast = cast_view(parts[0], rest, view)
     before = _measure_height(lenses, view) > _measure_height(rest, view)
-    cast.label[before & (cast.label % MATERIALS > BACKGROUND)] += FILM
+    cast.label[before & (cast.label % MATERIALS != BACKGROUND)] += FILM
     return cast
 
 
