@@ -6,10 +6,11 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy import ndimage
 
+from skinnet.images._skin_colours import compute_features, fit_normal, measure_distance, step_down
 from skinnet.images.box import Box
 from skinnet.images.faces.framing import frame_head
 from skinnet.images.resizing import resize
-from skinnet.images.srgb import LUMINANCE_WEIGHTS, srgb_to_linear
+from skinnet.images.srgb import srgb_to_linear
 
 _FACE_SIZE = 96
 """Width of the face, in pixels, at which skin is segmented."""
@@ -25,12 +26,6 @@ SKIN_AREAS: tuple[_Rectangle, ...] = (
 )
 """Both cheeks, the nose, and the forehead, in sides of the face's box; where hair hides it, its
 pixels are outliers."""
-
-_MIN_COVARIANCE = np.diag([0.06, 0.07, 0.32]) ** 2
-"""Least covariance of log R/G, log B/G and log luminance: shading and noise of even skin."""
-
-_SPECULAR_SHARES = (0.0, 0.15, 0.3, 0.45, 0.6)
-"""Shares of a pixel's darkest channel that are tried as white specular reflection."""
 
 
 def segment_skin(photo: NDArray[np.uint8], face: Box) -> NDArray[np.float32]:
@@ -76,48 +71,14 @@ def _segment(crop: NDArray[np.uint8], face: _Rectangle) -> NDArray[np.float32]:
     seeds = np.any([_select(x, y, seed) for seed in SKIN_AREAS], 0)
     if not seeds.any():
         return np.zeros(crop.shape[:2], np.float32)
-    mean, covariance = _fit_normal(_features(linear)[seeds])
-    distance = _mahalanobis(linear, mean, covariance)
+    mean, covariance = fit_normal(compute_features(linear)[seeds])
+    distance = measure_distance(linear, mean, covariance)
     # Lips and teeth differ from skin mostly in redness, so at the mouth less deviation is allowed.
     mouth = np.exp(-(((x - 0.5) / 0.22) ** 4) - ((y - 0.82) / 0.08) ** 4)
-    redness = np.abs(_features(linear)[..., 0] - mean[0]) / 0.05
-    score = _step_down(distance, 3.2, 0.35) * _step_down(redness * mouth, 2.0, 0.3)
+    redness = np.abs(compute_features(linear)[..., 0] - mean[0]) / 0.05
+    score = step_down(distance, 3.2, 0.35) * step_down(redness * mouth, 2.0, 0.3)
     score = score * _head_and_neck(x, y)
     return _clean(score)
-
-
-def _features(linear: NDArray[Any]) -> NDArray[Any]:
-    """Log R/G, log B/G and log luminance of linear sRGB."""
-    red, green, blue = np.moveaxis(np.log(linear), -1, 0)
-    return np.stack([red - green, blue - green, np.log(linear @ LUMINANCE_WEIGHTS)], -1)
-
-
-def _fit_normal(samples: NDArray[Any]) -> tuple[NDArray[Any], NDArray[Any]]:
-    """Mean and covariance of the samples; outliers are removed three times."""
-    luminance = samples[:, 2]
-    middle = np.quantile(luminance, 0.5, method="lower")  # a sample's own, so that some are kept
-    kept = samples[np.abs(luminance - middle) < 1.0]
-    for _ in range(3):
-        covariance = np.cov(kept.T, ddof=0) + _MIN_COVARIANCE
-        difference = samples - np.median(kept, 0)
-        square = np.einsum("ni,ij,nj->n", difference, np.linalg.inv(covariance), difference)
-        kept = samples[square < 7] if (square < 7).any() else kept
-    return kept.mean(0), np.cov(kept.T, ddof=0) + _MIN_COVARIANCE
-
-
-def _mahalanobis(
-    linear: NDArray[Any], mean: NDArray[Any], covariance: NDArray[Any]
-) -> NDArray[Any]:
-    """Mahalanobis distance to the skin; bright pixels may have a specular part."""
-    inverse = np.linalg.inv(covariance)
-    best = np.full(linear.shape[:2], np.inf)
-    bright = _features(linear)[..., 2] > mean[2]
-    for share in _SPECULAR_SHARES:
-        difference = _features(linear - share * linear.min(-1, keepdims=True)) - mean
-        square = np.einsum("hwi,ij,hwj->hw", difference, inverse, difference)
-        best = np.minimum(best, np.where(bright | (share == 0), square, np.inf))
-    distance: NDArray[Any] = np.sqrt(best)
-    return distance
 
 
 def _face_coordinates(
@@ -135,16 +96,11 @@ def _select(x: NDArray[Any], y: NDArray[Any], area: _Rectangle) -> NDArray[np.bo
     return inside
 
 
-def _step_down(value: NDArray[Any], middle: float, width: float) -> NDArray[Any]:
-    """A smooth step from 1 below `middle` to 0 above it."""
-    return 1 / (1 + np.exp(np.clip((value - middle) / width, -30, 30)))
-
-
 def _head_and_neck(x: NDArray[Any], y: NDArray[Any]) -> NDArray[Any]:
     """An ellipse around the head and a rectangle for the neck, with soft edges."""
     head = np.hypot((x - 0.5) / 0.72, (y - 0.47) / 0.85)
     neck = np.maximum(np.abs(x - 0.5) / 0.42, np.abs(y - 1.15) / 0.4)
-    return _step_down(np.minimum(head, neck), 1.0, 0.03)
+    return step_down(np.minimum(head, neck), 1.0, 0.03)
 
 
 def _clean(score: NDArray[Any]) -> NDArray[np.float32]:
