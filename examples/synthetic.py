@@ -1,40 +1,62 @@
-"""A contact sheet of 64 pictures of the synthetic renderer, with the heads of the validation set.
+"""A contact sheet of 48 pictures of the synthetic renderer, and one of their masks of skin.
 
-    python -m examples.synthetic [--ict ict_facekit.npz] [--beside PHOTOS] [-o runs/synthetic.png]
+    python -m examples.synthetic [--variety mild] [--ict ict_facekit.npz] [--beside PHOTOS]
+        [-o runs/synthetic.png]
 
-With a folder of photographs, a column of their faces stands beside the pictures, cropped as
-training crops them. Visible differences between the two show what the renderer lacks.
+The pictures are the first of the validation set. The second sheet, whose name ends in _mask,
+tints the true skin green. With a folder of photographs, a column of their faces stands beside the
+pictures, cropped as training crops them. Visible differences between the two show what the renderer
+lacks.
 """
 
 import argparse
 import sys
 from pathlib import Path
+from typing import get_args
 
 import numpy as np
 from numpy.typing import NDArray
 
 from examples._command import check_picture, run, write_picture
 from skinnet.images import to_uint8
+from train.batch import Batch
 from train.portraits import find_crops
 from train.synthetic.faces import SyntheticFaces
+from train.synthetic.variety import Variety
 
 TARGET = Path("runs/synthetic.png")
-SIDE, ACROSS, DOWN = 128, 8, 8
+SIDE, ACROSS, DOWN = 160, 8, 6
 GAP = 12
 """White pixels between the pictures and the photographs."""
+
+TINT = (0.1, 1.0, 0.2)
+TINT_SHARE = 0.5
 
 Picture = NDArray[np.uint8]
 
 
-def render_pictures(ict: str | None, geometry: str) -> list[Picture]:
-    """Render the first 64 pictures of the validation set."""
+def render_batches(variety: Variety, ict: str | None, geometry: str) -> list[Batch]:
+    """Render the first 48 pictures of the validation set."""
     count = ACROSS * DOWN
     data = SyntheticFaces(
-        SIDE, ACROSS, val_heads=count, val_samples=count, ict=ict, geometry=geometry
+        SIDE,
+        ACROSS,
+        val_heads=count,
+        val_samples=count,
+        ict=ict,
+        geometry=geometry,
+        variety=variety,
     )
     data.setup("validate")
-    rows = [data.render(scenes, "val").photograph for scenes in data.val_dataloader()]
-    return [to_uint8(one.movedim(0, -1).numpy()) for row in rows for one in row]
+    return [data.render(scenes, "val") for scenes in data.val_dataloader()]
+
+
+def list_pictures(batch: Batch, tinted: bool) -> list[Picture]:
+    """List the photographs of a batch, with or without a tint over skin."""
+    share = TINT_SHARE * tinted * batch.mask[:, None]
+    tint = batch.photograph.new_tensor(TINT)[:, None, None]
+    pictures = (batch.photograph * (1 - TINT_SHARE * tinted) + share * tint).clamp(0, 1)
+    return [to_uint8(one.movedim(0, -1).numpy()) for one in pictures]
 
 
 def tile(pictures: list[Picture], across: int) -> Picture:
@@ -57,27 +79,33 @@ def add_column(sheet: Picture, column: Picture) -> Picture:
     return np.concatenate([sheet, np.pad(column, pad, constant_values=255)], 1)
 
 
+def draw(options: argparse.Namespace) -> None:
+    """Render both sheets and write them."""
+    mask = options.output.with_stem(f"{options.output.stem}_mask")
+    check_picture(options.output, TARGET, "synthetic")
+    check_picture(mask, TARGET.with_stem(f"{TARGET.stem}_mask"), "synthetic")
+    column = None if options.beside is None else find_faces(options.beside)
+    batches = render_batches(options.variety, options.ict, options.geometry)
+    for path, tinted in ((options.output, False), (mask, True)):
+        pictures = [one for batch in batches for one in list_pictures(batch, tinted)]
+        sheet = tile(pictures, ACROSS)
+        if column is not None and not tinted:
+            sheet = add_column(sheet, column)
+        write_picture(path, sheet, "synthetic")
+
+
 def main(arguments: list[str] | None = None) -> int:
-    """Render the sheet and write it; return 2 for arguments that cannot be used."""
+    """Render the sheets and write them; return 2 for arguments that cannot be used."""
     parser = argparse.ArgumentParser(
         description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter
     )
+    parser.add_argument("--variety", choices=get_args(Variety), default="any")
     parser.add_argument("--ict", help="ICT-FaceKit's model as an .npz")
     parser.add_argument("--beside", type=Path, help="folder of photographs of faces")
     parser.add_argument("--geometry", default="runs/geometry", help="where heads are kept")
     parser.add_argument("-o", "--output", type=Path, default=TARGET)
     options = parser.parse_args(arguments)
-
-    def draw() -> None:
-        check_picture(options.output, TARGET, "synthetic")
-        if options.beside is not None:
-            column = find_faces(options.beside)
-        picture = tile(render_pictures(options.ict, options.geometry), ACROSS)
-        if options.beside is not None:
-            picture = add_column(picture, column)
-        write_picture(options.output, picture, "synthetic")
-
-    return run(draw)
+    return run(lambda: draw(options))
 
 
 if __name__ == "__main__":

@@ -12,8 +12,8 @@ from train.synthetic.labels import BODY, EYE, FILM, MATERIALS, MOUTH, SKIN, TEET
 from train.synthetic.people import MakeHead, make_group, make_person, sample_group
 
 _TRIES = 20
-_LEAST_SKIN, _LEAST_LONE_SKIN = 0.004, 0.06
-"""Least shares of skin in pictures with a face and without one; less is sampled again."""
+_LEAST_SKIN, _LEAST_LIMB, _LEAST_CLOSE_UP = 0.004, 0.06, 0.5
+"""Least shares of skin in pictures with a face, of limbs and of cheeks; less is sampled again."""
 
 
 def cast_any(make_head: MakeHead, rng: np.random.Generator, size: int) -> HeadCast:
@@ -54,8 +54,9 @@ def _shows_skin(cast: HeadCast, kind: Kind) -> bool:
     material = cast.label % FILM
     if kind != "skin":
         return bool((material == SKIN).mean() > _LEAST_SKIN)
-    features = np.isin(material, (EYE, TEETH, MOUTH)).mean()
-    return bool((material == SKIN).mean() > _LEAST_LONE_SKIN and features == 0)
+    least = _LEAST_LIMB if (cast.label >= BODY * MATERIALS).any() else _LEAST_CLOSE_UP
+    features = np.isin(material, (EYE, TEETH, MOUTH)).any()
+    return bool((material == SKIN).mean() > least and not features)
 
 
 def _cast(mesh: LabelledMesh, view: OrthographicView | PerspectiveView) -> HeadCast:

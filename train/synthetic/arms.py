@@ -150,8 +150,8 @@ def make_legs(x: float, top: float) -> LabelledMesh:
             Tube(
                 np.stack([0 * y + side * x, y, 0 * y - 0.1], 1),
                 np.tile([0.0, 0, 1], (count, 1)),
-                np.linspace(0.72, 0.45, count),
-                np.linspace(0.68, 0.45, count),
+                np.linspace(0.66, 0.45, count),
+                np.linspace(0.58, 0.42, count),
                 0 * y,
             ),
             CLOTH,

@@ -25,7 +25,7 @@ _TARGETS = ((0.0, -0.95), (0.0, -0.55), (0.35, -0.45), (0.5, -0.1), (0.3, 0.1), 
             (0.75, 0.2))  # fmt: skip
 """Where the middle of a hand may be, to the side of the face and up."""
 
-_WAIST, _HIPS = -3.4, -6.2
+_WAIST, _HIPS = -3.4, -6.6
 
 
 class Placement(NamedTuple):
@@ -49,7 +49,7 @@ def make_person(
         The person.
     """
     half_width, half_depth, z = _measure_waist(head)
-    parts = [head, _make_hips(half_width, half_depth, z), make_legs(0.55 * half_width, _HIPS + 0.6)]
+    parts = [head, _make_hips(half_width, half_depth, z), make_legs(0.5 * half_width, _HIPS + 1.5)]
     sleeve, raised = sample_sleeve(rng), rng.random() < hand_share
     first = rng.choice([-1, 1])
     for side in (first, -first):
