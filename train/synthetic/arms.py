@@ -141,17 +141,17 @@ def hang_arm(shoulder: Vector, rng: np.random.Generator, sleeve: float) -> Arm:
     return Arm(shoulder, elbow, wrist, axes, left, sleeve, rng.uniform(0.8, 1.05))
 
 
-def make_legs(x: float, top: float) -> LabelledMesh:
+def make_legs(x: float, top: float, z: float) -> LabelledMesh:
     """Make both legs in cloth, longer than any picture shows."""
     count = 12
     y = np.linspace(top, -20, count)
     legs = [
         make_tube(
             Tube(
-                np.stack([0 * y + side * x, y, 0 * y - 0.1], 1),
+                np.stack([0 * y + side * x, y, 0 * y + z], 1),
                 np.tile([0.0, 0, 1], (count, 1)),
                 np.linspace(0.66, 0.45, count),
-                np.linspace(0.58, 0.42, count),
+                np.linspace(0.5, 0.42, count),
                 0 * y,
             ),
             CLOTH,

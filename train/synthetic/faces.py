@@ -188,6 +188,8 @@ class SyntheticFaces(LightningDataModule):
     def description(self) -> str:
         """Return one line on these data for the files of a model."""
         kind = "procedural heads" if self.ict is None else "ICT-FaceKit and procedural heads"
+        if self.variety != "mild":
+            kind = f"scenes of {kind} of the variety {self.variety}"
         heads = f"{self.heads['train']} {kind} of skinnet's synthetic renderer"
         text = f"{heads}, seed {self.seed}, {self.size} px"
         return text if self.skins_file is None else f"{text}, half with skins of {self.skins_file}"

@@ -49,7 +49,11 @@ def make_person(
         The person.
     """
     half_width, half_depth, z = _measure_waist(head)
-    parts = [head, _make_hips(half_width, half_depth, z), make_legs(0.5 * half_width, _HIPS + 1.5)]
+    parts = [
+        head,
+        _make_hips(half_width, half_depth, z),
+        make_legs(0.5 * half_width, _HIPS + 1.5, z),
+    ]
     sleeve, raised = sample_sleeve(rng), rng.random() < hand_share
     first = rng.choice([-1, 1])
     for side in (first, -first):

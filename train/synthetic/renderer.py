@@ -58,6 +58,9 @@ def render(scene: SceneParameters, decoder: SkinDecoder, split: str = "train") -
 
     Returns:
         Photographs, masks, true maps, captures and albedo.
+
+    Raises:
+        ValueError: If faces and the paintings that the labels name differ in number.
     """
     head, paintings = scene.head, find_paintings(scene.head.label)
     matrix, capture = simulate_sensor(scene.light, scene.camera, decoder.camera, split)
@@ -111,6 +114,12 @@ def _paint(
     matrix: Float[Tensor, "batch wavelength 3"],
 ) -> _Surface:
     picture, skin = paintings.picture, scene.face.skin
+    if len(picture) != len(skin.melanin.fraction):
+        raise ValueError(
+            f"The labels have {len(picture)} paintings and the scene has "
+            f"{len(skin.melanin.fraction)} faces; sample it with the variety of its heads, and "
+            "collate scenes of the variety any by collate_scenes."
+        )
     label = (scene.head.label % FILM)[picture, None].float()
     place = scene.head.chart.movedim(-1, 1).float()[picture]
     charts = _sample_charts(_paint_charts(scene.face, paintings.number), place)

@@ -4,6 +4,7 @@ from pathlib import Path
 
 import pytest
 import torch
+from torch.utils.data import default_collate
 
 from train.batch import Batch
 from train.synthetic.faces import SyntheticFaces, SyntheticScenes
@@ -74,6 +75,13 @@ def test_each_pixel_has_the_base_pigment_of_its_person(
             own = (paintings.owner == row) & (batch.head.label % MATERIALS == SKIN)
             ratio = true[picture][own[picture]] / pigment.fraction[row]
             assert 0.6 < ratio.median() < 1.6
+
+
+def test_a_face_for_each_painting_is_asked_for(heads: HeadBuffers) -> None:
+    scenes = SyntheticScenes(heads, "train", 2, seed=2, variety="mild")
+    batch = default_collate([scenes[0], scenes[1]])
+    with pytest.raises(ValueError, match="5 paintings and the scene has 2 faces"):
+        SyntheticFaces(size=SIZE, optics="calibrated").render(batch, "train")
 
 
 def test_truth_is_finite_and_skin_is_where_its_label_is(

@@ -1,5 +1,6 @@
 """The mild faces are those of earlier versions, and the two varieties share no file."""
 
+from collections.abc import Callable
 from pathlib import Path
 
 import pytest
@@ -26,6 +27,19 @@ def test_mild_sets_are_those_of_earlier_versions(tmp_path: Path, split: str) -> 
     sums = [int(one.long().sum()) for one in (head.label, head.normal, head.sky_visibility)]
     photographs = data.render(scenes, split).photograph
     assert (*sums, photographs.sum().item()) == pytest.approx(KNOWN[split], abs=1e-3)
+
+
+@pytest.mark.slow
+def test_a_model_is_trained_on_any(tmp_path: Path, fit: Callable[..., int]) -> None:
+    assert fit(tmp_path / "run", "--data.init_args.variety", "any") == 0
+    assert "variety: any" in (tmp_path / "run" / "config.yaml").read_text()
+
+
+def test_a_model_says_what_it_saw() -> None:
+    assert "variety" not in SyntheticFaces().description
+    assert (
+        "scenes of procedural heads of the variety any" in SyntheticFaces(variety="any").description
+    )
 
 
 def test_varieties_have_folders_of_their_own() -> None:
