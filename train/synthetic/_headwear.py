@@ -8,6 +8,7 @@ from train.synthetic._shell import (
     Grid,
     HeadSurface,
     Points,
+    make_room_for_ears,
     make_sheet,
     move_out,
     sample_waves,
@@ -30,7 +31,8 @@ def make_beanie(surface: HeadSurface, rng: np.random.Generator) -> LabelledMesh:
     slouch = rng.uniform(0, 0.22) * up**3
     ribs = 0.006 * np.cos(rng.choice([56, 80]) * azimuth) * np.cos(elevation)
     waves = 0.012 * sample_waves(rng, np.sin(azimuth), up, (5, 4))
-    points = stretch(surface.place(azimuth, elevation), HAIR_ROOM, 60)
+    off = HAIR_ROOM + make_room_for_ears(azimuth, elevation)
+    points = stretch(surface.place(azimuth, elevation), off, 60)
     points = move_out(points, cuff + slouch + ribs + waves * (up > 0.1))
     return make_sheet(_tuck_rim(points, 0.04), HEADWEAR, azimuth, up)
 
@@ -80,7 +82,8 @@ def make_hard_hat(surface: HeadSurface, rng: np.random.Generator) -> LabelledMes
 def make_turban(surface: HeadSurface, rng: np.random.Generator) -> LabelledMesh:
     """Make a turban, whose wraps cross in front."""
     azimuth, up, elevation = _lay_crown(rng.uniform(0.42, 0.55), rng.uniform(0.0, 0.2), -0.2)
-    points = stretch(surface.place(azimuth, elevation), HAIR_ROOM + 0.03, 300)
+    off = HAIR_ROOM + 0.03 + make_room_for_ears(azimuth, elevation)
+    points = stretch(surface.place(azimuth, elevation), off, 300)
     lean = rng.uniform(0.12, 0.3)
     height = elevation + lean * np.abs(np.sin(azimuth / 2)) - lean
     height = height + 0.012 * sample_waves(rng, azimuth, up, (2, 3))
@@ -181,14 +184,15 @@ def _make_hood(
 ) -> LabelledMesh:
     """Make cloth over head, neck and shoulders with an opening where `measure` is negative."""
     azimuth = np.linspace(-np.pi, np.pi, 161)[None]
-    lowest = -1.0 - 0.12 * np.cos(azimuth)
+    lowest = -0.92 - 0.2 * np.cos(azimuth)
     elevation = np.pi / 2 + (lowest - np.pi / 2) * np.linspace(0, 1, 90)[:, None]
     azimuth, elevation = np.broadcast_arrays(azimuth, elevation)
     off = 0.04 + loose
     outside = measure(azimuth, elevation)
-    # The edge lies on the skin, so that nobody looks under the cloth.
+    # The edge lies in the skin, so that nobody looks under the cloth.
     lift = 1 - np.exp(-outside.clip(0) / 0.12)
-    head = stretch(surface.place(azimuth, elevation), 0.012 + off * lift, 150, outside < 0.1)
+    room = (off + make_room_for_ears(azimuth, elevation)) * lift
+    head = stretch(surface.place(azimuth, elevation), room - 0.015, 150, outside < 0.1)
     waves = sample_waves(rng, azimuth, elevation, (4.0, 3.0))
     head = move_out(head, loose * (1 - np.exp(-outside.clip(0) / 0.4)) * (1 + 0.7 * waves))
     # A veil falls from the nose, not along lips and chin.
@@ -217,14 +221,15 @@ def _drape(
     share = np.linspace(0, 1, 40)[1:, None]
     low = -1.45 if spread < 0.1 else rng.uniform(-2.1, -1.7)
     loose = spread > 0.1
-    wide = neck.half_width + 0.06 + 0.12 * loose + (spread + 0.8 * loose) * share**1.2
-    deep = neck.half_depth + 0.06 + 0.12 * loose + (0.6 * spread + 0.25 * loose) * share**1.2
+    # Near the neck it spreads fast: shoulders must not come through.
+    wide = neck.half_width + 0.1 + 0.2 * loose + (spread + 0.8 * loose) * share**0.8
+    deep = neck.half_depth + 0.08 + 0.14 * loose + (0.6 * spread + 0.3 * loose) * share**0.8
     folds = sample_waves(rng, azimuth[None], share, (9.0, 2.5)) * (0.01 + 0.12 * spread) * share
     x = neck.x + (wide + folds) * np.sin(azimuth)
     ahead = 1.6 * hang * np.exp(-((azimuth / 0.75) ** 4))
     z = neck.z + (deep + folds) * np.cos(azimuth) + ahead
     y = ring[:, 1] * (1 - share) + low * share
-    blend = (1 - np.exp(-share / 0.2)) / (1 - np.exp(-1 / 0.2))
+    blend = (1 - np.exp(-share / 0.12)) / (1 - np.exp(-1 / 0.12))
     return np.stack(
         [ring[:, 0] * (1 - blend) + x * blend, y, ring[:, 2] * (1 - blend) + z * blend], -1
     )

@@ -91,7 +91,8 @@ def cover_with_style(style: BeardStyleParameters, side: Tensor, elevation: Tenso
     empty = torch.ones_like(parts[0])
     for share, part in zip(style.parts.unbind(1), parts, strict=True):
         empty = empty * (1 - expand_scalar(share) * part)
-    grown = soft_step((1 - empty) * bare + 0.09 * hairs - 0.5, 0.28)
+    shape = (1 - empty) * bare
+    grown = soft_step(shape + 0.09 * hairs - 0.5, 0.28) * (5 * shape).clamp_max(1)
     everywhere = 1 - (1 - parts[0]) * (1 - parts[1]) * (1 - parts[2]) * (1 - parts[3])
     stubble = expand_scalar(style.stubble) * everywhere * bare * (0.85 + 0.12 * hairs)
     beard = expand_scalar(style.beard) * grown * (0.92 + 0.06 * hairs)
