@@ -18,7 +18,6 @@ from train.synthetic.labels import (
     MATERIALS,
     MOUTH,
     NAIL,
-    SKIN,
     TEETH,
 )
 from train.synthetic.scene import (
@@ -56,11 +55,10 @@ def colour_materials(
         own_skin: Linear sRGB of the wearer's skin under white light.
 
     Returns:
-        Linear sRGB under white light; on skin it is `cover_colour`.
+        Linear sRGB under white light; on skin, and on the wall, it is `cover_colour`.
     """
     features = scene.face.features
-    wall = _colour_wall(scene.surroundings, label.shape[-2:])
-    colour = torch.where(label == SKIN, cover_colour, wall)
+    colour = cover_colour
     materials = {
         EYE: _colour_eye(features, place),
         TEETH: expand_colour(features.teeth),
@@ -77,7 +75,8 @@ def colour_materials(
     return colour
 
 
-def _colour_wall(surroundings: SurroundingsParameters, size: torch.Size) -> _Image:
+def colour_wall(surroundings: SurroundingsParameters, size: torch.Size) -> _Image:
+    """Colour the wall of each picture, in linear sRGB under its own light."""
     wall = F.interpolate(surroundings.wall, size, mode="bicubic", align_corners=True)
     coarse, fine = (
         F.interpolate(one, size, mode="bilinear")

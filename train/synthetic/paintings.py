@@ -70,11 +70,15 @@ def merge_paintings(
     Returns:
         Values of the pictures.
     """
-    if paintings.single:
-        return values
-    rows, columns = (torch.arange(n, device=values.device) for n in values.shape[2:])
-    merged = values[paintings.owner, :, rows[:, None], columns]
-    return merged.movedim(-1, 1).contiguous()
+    first = paintings.first
+    merged = values[first]
+    rank = torch.arange(len(values), device=values.device) - first[paintings.picture]
+    for number in range(1, int(rank.max()) + 1):
+        rows = (rank == number).nonzero()[:, 0]
+        pictures = paintings.picture[rows]
+        own = (paintings.owner[pictures] == rows[:, None, None])[:, None]
+        merged[pictures] = torch.where(own, values[rows], merged[pictures])
+    return merged
 
 
 def collate_scenes(scenes: list[SceneParameters]) -> SceneParameters:

@@ -15,7 +15,7 @@ from train.synthetic._garment_colours import reflect_in_lenses
 from train.synthetic.body_painting import paint_body
 from train.synthetic.face_painting import FaceCharts, paint_face
 from train.synthetic.labels import BODY, FILM, MATERIALS, SKIN
-from train.synthetic.materials import OIL, colour_materials
+from train.synthetic.materials import OIL, colour_materials, colour_wall
 from train.synthetic.paintings import Paintings, find_paintings, merge_paintings
 from train.synthetic.scene import (
     CameraParameters,
@@ -68,10 +68,12 @@ def render(scene: SceneParameters, decoder: SkinDecoder, split: str = "train") -
     material = (head.label % FILM)[:, None]
     film = (head.label % MATERIALS >= FILM)[:, None].float()
     skin = (material == SKIN).float()
-    first = map_tensors(lambda value: value[paintings.first], scene.face.skin.specular)
+    first = paintings.first
+    specular = map_tensors(lambda value: value[first], scene.face.skin.specular)
+    surroundings = map_tensors(lambda value: value[first], scene.surroundings)
     shading = shade(
         scene.light,
-        first,
+        specular,
         normalise(decode_normals(head.normal) + skin * F.pad(surface.bump, (0, 0, 0, 0, 0, 1))),
         decode_sky_visibility(head.sky_visibility),
         head.visibility_mask,
@@ -79,8 +81,9 @@ def render(scene: SceneParameters, decoder: SkinDecoder, split: str = "train") -
     )
     white = expand_colour(matrix.sum(-2))
     # The wall has its own light.
-    other = surface.other * torch.where(material > 0, shading.diffuse, 1.0)
-    other = (other + shading.specular * (material > 0)) * white
+    wall = colour_wall(surroundings, material.shape[-2:])
+    lit = surface.other * shading.diffuse + shading.specular
+    other = torch.where(material > 0, lit, wall) * white
     share = skin * (1 - surface.cover)
     visible = VisibleSkin(
         surface.melanin[:, 0], surface.hemoglobin[:, 0], surface.albedo, share, shading
@@ -147,8 +150,7 @@ def _paint(
     )
     if paintings.single:
         return surface
-    merged = merge_paintings(paintings, torch.cat(surface, 1))
-    return _Surface(*merged.split([one.shape[1] for one in surface], 1))
+    return _Surface(*(merge_paintings(paintings, one) for one in surface))
 
 
 def _paint_charts(face: FaceParameters, number: Int64[Tensor, "paintings"]) -> FaceCharts:
@@ -161,8 +163,10 @@ def _paint_charts(face: FaceParameters, number: Int64[Tensor, "paintings"]) -> F
     if not len(heads):
         return bodies
     faces = paint_face(map_tensors(lambda value: value[heads], face))
-    back = torch.cat([heads, body]).argsort()
-    return FaceCharts(*(torch.cat(pair)[back] for pair in zip(faces, bodies, strict=True)))
+    charts = FaceCharts(*(one.new_empty(len(number), *one.shape[1:]) for one in faces))
+    for whole, own, other in zip(charts, faces, bodies, strict=True):
+        whole[heads], whole[body] = own, other
+    return charts
 
 
 def develop(
