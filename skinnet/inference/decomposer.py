@@ -13,6 +13,7 @@ from PIL import Image
 
 from skinnet.errors import InputError
 from skinnet.images.box import Box
+from skinnet.images.faces._face_parts import find_face_parts
 from skinnet.images.photograph import read_picture
 from skinnet.images.picture import Picture
 from skinnet.images.resizing import resize
@@ -272,6 +273,7 @@ class Decomposer:
             },
             face_id=subject.face_id,
             faces_found=None if subject.faces is None else len(subject.faces),
+            face_parts=None if subject.face is None else find_face_parts(photo, subject.face),
         )
 
     def _edit_in_place(

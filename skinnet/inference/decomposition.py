@@ -1,15 +1,21 @@
 """The result for one photograph: maps, light, camera, and their summary."""
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
+from functools import cached_property
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from skinnet._version import __version__
+from skinnet.errors import InputError
 from skinnet.images.box import Box
 from skinnet.images.colour_space import ColourSpace
+from skinnet.images.faces._face_parts import FaceParts, FaceRegion
+from skinnet.images.faces._face_regions import REGION_NAMES
+from skinnet.images.faces._outlines import Patch
+from skinnet.inference._regions import RegionSummary, summarise_region
 from skinnet.inference.onnx_model import OutputInfo
 
 SKIN_THRESHOLD = 0.5
@@ -45,6 +51,8 @@ class Decomposition:
         face_id: Number of the face, from 1, from left to right among all faces that were found in
             the photograph; None if no face was looked for.
         faces_found: Number of faces that were found in the photograph; None if none was looked for.
+        face_parts: Where the parts of the face are; None if no face was looked for. It is what
+            `landmarks`, `regions`, `sclera` and `teeth` are made of.
 
     Example:
         >>> from skimage.data import astronaut
@@ -69,6 +77,7 @@ class Decomposition:
     notes: tuple[str, ...] = ()
     face_id: int | None = None
     faces_found: int | None = None
+    face_parts: FaceParts | None = None
 
     def __repr__(self) -> str:
         height, width = self.mask.shape
@@ -80,6 +89,77 @@ class Decomposition:
             f"<Decomposition {width} x {height}: melanin {self.melanin[skin].mean():.3g}, "
             f"hemoglobin {self.hemoglobin[skin].mean():.3g} on skin, {share:.0%} of the box>"
         )
+
+    @property
+    def landmarks(self) -> NDArray[np.float32] | None:
+        """Columns and rows of the 478 points of MediaPipe's face mesh, float32 [478, 2].
+
+        They are in pixels from the photograph's upper left corner, so that the centre of its first
+        pixel is (0.5, 0.5). The last ten are the irises. None if no face was looked for.
+        """
+        return None if self.face_parts is None else self.face_parts.landmarks
+
+    @cached_property
+    def regions(self) -> dict[str, RegionSummary]:
+        """Mean, standard deviation and median of melanin and hemoglobin in regions of the face.
+
+        They are forehead, left and right cheek (the person's), nose, lips, chin, neck and eyelids.
+        Each has `share`, the part of it that is skin. Of a region that hair, cloth or the head's
+        turn hides the pigments are None. Empty if no face was looked for.
+
+        Example:
+            >>> from skimage.data import astronaut
+            >>> from skinnet import Decomposer
+            >>> regions = Decomposer(threads=1)(astronaut()).regions
+            >>> print(f"{regions['nose'].melanin.median:.2f}")
+            0.03
+        """
+        parts = {} if self.face_parts is None else self.face_parts.regions
+        return {name: self._summarise_region(region) for name, region in parts.items()}
+
+    @property
+    def sclera(self) -> NDArray[np.bool_]:
+        """Mask of the whites of the eyes, for the colour of the light, bool [H, W].
+
+        It is empty where eyes are closed, turned away, or narrower than 24 pixels.
+        """
+        return self._paste(() if self.face_parts is None else self.face_parts.sclera)
+
+    @property
+    def teeth(self) -> NDArray[np.bool_]:
+        """Mask of the teeth, bool [H, W].
+
+        It is empty if the mouth is closed, or narrower than 24 pixels.
+        """
+        return self._paste(() if self.face_parts is None else self.face_parts.teeth)
+
+    def region_mask(self, name: str) -> NDArray[np.bool_]:
+        """Mask the pixels of a region of the face that `regions` counts.
+
+        Args:
+            name: A key of `regions`.
+
+        Returns:
+            bool [H, W].
+
+        Raises:
+            InputError: There is no region of this name, or no face was looked for.
+
+        Example:
+            >>> from skimage.data import astronaut
+            >>> from skinnet import Decomposer
+            >>> decomposition = Decomposer(threads=1)(astronaut(), detail=False)
+            >>> nose = decomposition.region_mask("nose")
+            >>> bool(nose.sum() == decomposition.regions["nose"].pixels)
+            True
+        """
+        if name not in REGION_NAMES:
+            raise InputError(f"The regions of a face are {', '.join(REGION_NAMES)}; got {name!r}.")
+        if self.face_parts is None:
+            raise InputError(f"No face was looked for, so there is no {name}; leave out region.")
+        patch = self.face_parts.regions[name].patch
+        skin = self.mask[patch.box.slices] > SKIN_THRESHOLD
+        return self._paste([Patch(patch.box, patch.inside & skin)])
 
     def maps(self) -> dict[str, NDArray[np.float32]]:
         """Return all maps by name.
@@ -108,8 +188,10 @@ class Decomposition:
         Returns:
             `id` (of the face), `faces_found`, `photo` (size), `colour_space` (`name`,
             `known_from`), `notes`, `box`, `skin_share` (part of the box that is skin), `maps`
-            (`unit`, `mean`, `std`, `p5` and `p95` of each; None where there is no skin), `light`,
-            `camera`, `version` and `model`.
+            (`unit`, `mean`, `std`, `p5` and `p95` of each; None where there is no skin),
+            `regions` (of each `melanin` and `hemoglobin` with `mean`, `std` and `median`, which are
+            None where it is hidden, `share` and `pixels`), `landmarks` (a list of [x, y] to a
+            tenth of a pixel; None without a face), `light`, `camera`, `version` and `model`.
         """
         skin = self.mask > SKIN_THRESHOLD
         height, width = skin.shape
@@ -129,11 +211,29 @@ class Decomposition:
                 name: {"unit": self.describe_map(name).unit} | _summarise(value[skin])
                 for name, value in maps.items()
             },
+            "regions": {name: region.to_json() for name, region in self.regions.items()},
+            "landmarks": None if self.landmarks is None else _round_points(self.landmarks),
             "light": _round_all(self.light),
             "camera": _round_all(self.camera),
             "version": __version__,
             "model": self.model,
         }
+
+    def _summarise_region(self, region: FaceRegion) -> RegionSummary:
+        box = region.patch.box.slices
+        skin = self.mask[box] > SKIN_THRESHOLD
+        return summarise_region(region, skin, self.melanin[box], self.hemoglobin[box])
+
+    def _paste(self, patches: Sequence[Patch]) -> NDArray[np.bool_]:
+        """A mask of the photograph's size."""
+        mask = np.zeros(self.mask.shape, bool)
+        for patch in patches:
+            mask[patch.box.slices] |= patch.inside
+        return mask
+
+
+def _round_points(points: NDArray[np.float32]) -> list[list[float]]:
+    return [[round(x, 1), round(y, 1)] for x, y in points.tolist()]
 
 
 def _summarise(values: NDArray[np.float32]) -> dict[str, float | None]:

@@ -1,6 +1,7 @@
 """The files of a decomposed photograph, which are written together or not at all."""
 
 import json
+import re
 from collections.abc import Callable, Sequence
 from pathlib import Path
 from typing import Any, NamedTuple
@@ -16,6 +17,9 @@ from skinnet.inference.decomposition import Decomposition
 from skinnet.inference.panel import draw_panel
 
 _LEVELS = 65535
+
+_PAIR_ON_LINES = re.compile(r"\[\n\s+([-+.\de]+),\n\s+([-+.\de]+)\n\s+\]")
+"""Two numbers that JSON with an indent has on four lines; there are 478 such landmarks."""
 
 
 class _Result(NamedTuple):
@@ -101,6 +105,7 @@ def _write_result(
         path = temporary(folder / f"{stem}_{name}.png")
         _write_map(path, name, decomposition, Mark("predict", "map", digest))
     record = json.dumps(summary, indent=2, allow_nan=False)
+    record = _PAIR_ON_LINES.sub(r"[\1, \2]", record)
     write_text(temporary(folder / f"{stem}.json"), record + "\n")
 
 
