@@ -48,6 +48,7 @@ bench: $(READY)
 	$(BIN)/python -m benchmarks.lookup
 	$(BIN)/python -m benchmarks.calibration
 	$(BIN)/python -m benchmarks.appearance
+	$(BIN)/python -m benchmarks.faces
 	$(BIN)/python -m benchmarks.full_resolution
 	$(BIN)/python -m benchmarks.encoder
 	$(BIN)/python -m benchmarks.identifiability

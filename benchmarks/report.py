@@ -17,6 +17,7 @@ def main(
     description: str,
     layout: Callable[[Results], str] | None = None,
     paths: Mapping[str, str] | None = None,
+    counts: Mapping[str, str] | None = None,
 ) -> None:
     """Measure, then print the figures.
 
@@ -29,11 +30,17 @@ def main(
             one object instead.
         paths: Help text of each option that takes a path, by its name: `--NAME PATH` is the keyword
             `NAME` of `measure`, and None where it is not given.
+        counts: The same for each option that takes a whole number; where it is not given, `measure`
+            has its default.
     """
     parser = argparse.ArgumentParser(description=description)
     parser.add_argument("--json", action="store_true", help="print one JSON object")
     for name, text in (paths or {}).items():
         parser.add_argument(f"--{name}", type=Path, metavar="PATH", help=text)
+    for name, text in (counts or {}).items():
+        parser.add_argument(
+            f"--{name}", type=int, metavar="N", help=text, default=argparse.SUPPRESS
+        )
     given = vars(parser.parse_args())
     as_json = given.pop("json")
     try:

@@ -7,9 +7,9 @@ import numpy as np
 from numpy.typing import NDArray
 from PIL import Image
 
-_ENOUGH_DETAIL = 2.0
-"""Pixels of the photograph in one of the cut square, across, above which the photograph is shrunk
-first; bilinear interpolation of every pixel would skip some."""
+_ENOUGH_DETAIL = 1.4
+"""Pixels of the photograph in one of the cut square, across, to about which the photograph is
+shrunk first; bilinear interpolation of more would skip some."""
 
 _GREY = (128, 128, 128)
 """Colour of what is outside the photograph."""
@@ -32,21 +32,17 @@ class TurnedSquare(NamedTuple):
 
     def cut(self, photo: NDArray[np.uint8], size: int) -> NDArray[np.uint8]:
         """Cut the square from a photograph [H, W, 3], upright: uint8 [size, size, 3]."""
-        shrink = max(1.0, self.side / size / _ENOUGH_DETAIL)
+        shrink = max(1, round(self.side / size / _ENOUGH_DETAIL))
         left, top, right, bottom = self._bounds(photo.shape)
         if right <= left or bottom <= top:
             return np.full((size, size, 3), _GREY, np.uint8)
         part = Image.fromarray(np.ascontiguousarray(photo[top:bottom, left:right]))
-        width, height = (max(1, round(side / shrink)) for side in part.size)
-        if shrink > 1:
-            part = part.resize((width, height), Image.Resampling.BOX, reducing_gap=2.0)
         matrix = self.matrix(size)
         matrix[:, 2] -= left, top
-        matrix *= np.array([[width / (right - left)], [height / (bottom - top)]])
-        cut = part.transform(
+        cut = part.reduce(shrink).transform(
             (size, size),
             Image.Transform.AFFINE,
-            tuple(matrix.ravel()),
+            tuple((matrix / shrink).ravel()),
             Image.Resampling.BILINEAR,
             fillcolor=_GREY,
         )

@@ -12,12 +12,13 @@ from skinnet.images.faces._face_place import place_face, to_box
 from skinnet.images.faces._turned_square import TurnedSquare, measure_overlap
 from skinnet.images.faces.face import Face
 
-_LEAST_DETECTION, _LEAST_MESH, _LEAST_BOTH = 0.4, 0.5, 0.45
-"""Least probability of a face for the detector and for the mesh, and least product of the two."""
+_LEAST_DETECTION, _LEAST_IN_PARTS = 0.4, 0.5
+"""Least probability of a face for the detector, and in parts of a photograph, where patterns of
+clothes look like small, unclear faces."""
 
-_LEAST_IN_PARTS = 0.6
-"""Least probability for the detector in parts of a photograph, where patterns of clothes look like
-small, unclear faces."""
+_WEIGHT, _LEAST_ODDS = 25.0, 26.0
+"""Weight of the detector's probability beside the mesh's log odds, and the sum from which on
+something is a face: the two together tell ties and lamps from half-hidden faces."""
 
 _SURE = 13.8
 """Log odds of a face for the mesh from which on no other orientation is tried: bare faces that are
@@ -44,15 +45,13 @@ _LARGE_PHOTO = 512
 _FAR = 1.6
 """Side of a view from afar, for faces that fill the photograph, relative to the longer side."""
 
-_PARTS = ((2, 0.6), (3, 0.36))
-"""Numbers of parts in a row or column, and their sides relative to the longer side."""
+_PARTS = ((2, 0.6, 0.25), (3, 0.36, 0.1))
+"""Numbers of parts in a row or column, their sides, and the side of the smallest face found below
+which they are searched, relative to the longer side: people who are photographed together have
+like sizes."""
 
-_SMALL_FACE = 0.1
-"""Side of the smallest face found, relative to the longer side, below which the small parts are
-searched too: people who are photographed together have like sizes."""
-
-_Mesh = tuple[NDArray[np.float32], float]
-"""Landmarks, and the log odds of a face."""
+_Mesh = tuple[NDArray[np.float32], float, float]
+"""Landmarks, the mesh's log odds of a face, and the detector's probability."""
 
 _Placed = tuple[TurnedSquare, Face]
 """A face with its square, which is turned as it is."""
@@ -109,9 +108,9 @@ def _is_known(square: TurnedSquare, found: list[_Placed]) -> bool:
 def _search_parts(photo: NDArray[np.uint8], found: list[_Placed]) -> None:
     """Search parts of a large photograph, and smaller ones if there may be smaller faces."""
     longer = max(photo.shape[:2])
-    for count, part in _PARTS:
-        sizes = [square.side for square, _ in found]
-        if longer < _LARGE_PHOTO or (count > 2 and sizes and min(sizes) > _SMALL_FACE * longer):
+    for count, part, largest in _PARTS:
+        smallest = min((square.side for square, _ in found), default=0.0)
+        if longer < _LARGE_PHOTO or smallest > largest * longer:
             return
         for view in _list_parts(photo.shape, count, part * longer):
             _search(photo, view, _LEAST_IN_PARTS, found)
@@ -134,17 +133,18 @@ def _frame(shape: tuple[int, ...], margin: float = 1.0) -> TurnedSquare:
 
 
 def _confirm(photo: NDArray[np.uint8], detection: Detection) -> _Placed | None:
-    """The face of a detection, with its square; None if the mesh sees none."""
-    landmarks, odds = _choose_turn(photo, detection)
-    score = 1 / (1 + math.exp(-odds))
-    if score < _LEAST_MESH or score * detection.score < _LEAST_BOTH:
+    """The face of a detection, with its square; None if the two networks together see none."""
+    landmarks, odds, probability = _choose_turn(photo, detection)
+    evidence = odds + _WEIGHT * probability - _LEAST_ODDS
+    if evidence < 0:
         return None
     place = place_face(landmarks)
+    score = 1 / (1 + math.exp(-evidence))
     return place, Face(to_box(place), math.degrees(place.tilt), score, landmarks)
 
 
 def _choose_turn(photo: NDArray[np.uint8], detection: Detection) -> _Mesh:
-    """Landmarks and log odds in the orientation in which the face is clearest."""
+    """Landmarks and odds in the orientation in which the face is clearest."""
     mesh = _read_mesh(photo, detection)
     if mesh[1] >= _SURE:
         return mesh
@@ -155,8 +155,8 @@ def _choose_turn(photo: NDArray[np.uint8], detection: Detection) -> _Mesh:
 
 
 def _read_mesh(photo: NDArray[np.uint8], detection: Detection) -> _Mesh:
-    square = detection.square
-    return find_landmarks(photo, square._replace(side=_MESH_MARGIN * square.side))
+    square = detection.square._replace(side=_MESH_MARGIN * detection.square.side)
+    return *find_landmarks(photo, square), detection.score
 
 
 def _turn(photo: NDArray[np.uint8], detection: Detection, turn: float) -> Detection | None:
