@@ -1,5 +1,7 @@
 """Beards, make-up, face paint and plasters on the charts of a batch of faces."""
 
+from typing import NamedTuple
+
 import torch
 import torch.nn.functional as F
 from torch import Tensor
@@ -11,10 +13,17 @@ from train.synthetic.scene import (
     BeardStyleParameters,
     CosmeticParameters,
     FaceParameters,
+    map_tensors,
 )
 from train.synthetic.tensors import expand_colour, expand_scalar, soft_step
 
-_Layer = tuple[Tensor, Tensor]
+
+class Layer(NamedTuple):
+    """Paint on some faces of a batch; None is all of them."""
+
+    colour: Tensor
+    opacity: Tensor
+    faces: Tensor | None = None
 
 
 def has_style(face: FaceParameters) -> bool:
@@ -22,34 +31,54 @@ def has_style(face: FaceParameters) -> bool:
     return bool(face.garments.colours.any())
 
 
-def list_styled_layers(
-    face: FaceParameters, layers: list[_Layer], beard: Tensor, azimuth: Tensor, elevation: Tensor
-) -> list[_Layer]:
+def list_styled_layers(face: FaceParameters, layers: list[Layer], beard: Layer) -> list[Layer]:
     """Put make-up under the layers of a mild face, and beard, paint and plaster over them.
 
     Args:
         face: A batch.
-        layers: Colour and opacity of each layer, from the skin outwards; the first is lipstick,
-            which here ends at the lips' edge.
-        beard: Result of `cover_with_style`.
-        azimuth: Of the chart's columns in radians.
-        elevation: Of its rows.
+        layers: Layers of a mild face, from the skin outwards. The first two are lipstick, which
+            here ends at the lips' edge, and the beard that `beard` replaces.
+        beard: Result of `grow_beard`.
 
     Returns:
         All layers.
     """
-    make_up, style = face.cosmetics, face.beard_style
-    hairs = expand_colour(style.colour) * (0.4 * _resize(style.hairs)).exp()
-    lashes = _line_eyes(azimuth.abs(), elevation) * expand_scalar(make_up.eyeliner)
-    return [
-        *_list_make_up(make_up, azimuth, elevation),
-        (layers[0][0], _find_lips(azimuth.abs(), elevation) * expand_scalar(face.features.make_up)),
-        *layers[1:],
-        (torch.full_like(hairs[:, :, :1, :1], 0.012), lashes),
-        (hairs, beard),
-        (expand_colour(make_up.paint_colour), _paint(make_up, azimuth, elevation)),
-        (expand_colour(make_up.plaster_colour), _stick_plaster(make_up, azimuth, elevation)),
+    make_up, (azimuth, elevation) = face.cosmetics, _get_angles(beard.colour.device)
+    side = azimuth.abs()
+    under = [
+        _spread(make_up.blush, make_up.blush_colour, _find_cheeks(azimuth, elevation)),
+        _spread(make_up.eye_shadow, make_up.eye_shadow_colour, _find_lids(azimuth, elevation)),
+        _spread(face.features.make_up, face.features.lipstick, _find_lips(side, elevation)),
     ]
+    black = torch.full_like(make_up.paint_colour, 0.012)
+    return [
+        *under,
+        *layers[2:],
+        _spread(make_up.eyeliner, black, _line_eyes(side, elevation)),
+        beard,
+        _paint(make_up, azimuth, elevation),
+        _stick_plaster(make_up, azimuth, elevation),
+    ]
+
+
+def grow_beard(face: FaceParameters) -> Layer:
+    """Paint beard and stubble on the faces that have some."""
+    grown = (face.beard_style.beard + face.beard_style.stubble).nonzero()[:, 0]
+    style = map_tensors(lambda value: value[grown], face.beard_style)
+    azimuth, elevation = _get_angles(grown.device)
+    hairs = expand_colour(style.colour) * (0.4 * _resize(style.hairs)).exp()
+    return Layer(hairs, cover_with_style(style, azimuth.abs(), elevation), grown)
+
+
+def _spread(opacity: Tensor, colour: Tensor, place: Tensor) -> Layer:
+    """Spread one colour over a place of the faces whose opacity is not 0."""
+    worn = opacity.nonzero()[:, 0]
+    return Layer(expand_colour(colour[worn]), expand_scalar(opacity[worn]) * place, worn)
+
+
+def _get_angles(device: torch.device) -> tuple[Tensor, Tensor]:
+    azimuth, elevation = compute_chart_angles(*CHART_SIZE)
+    return azimuth.to(device), elevation.to(device)
 
 
 def even_out(
@@ -65,7 +94,7 @@ def even_out(
     Returns:
         Log factors as they seem to be.
     """
-    azimuth, elevation = (one.to(log_melanin.device) for one in compute_chart_angles(*CHART_SIZE))
+    azimuth, elevation = _get_angles(log_melanin.device)
     face = soft_step(1.15 - azimuth.abs(), 0.2) * soft_step(elevation + 1.1, 0.1)
     share = expand_scalar(make_up.foundation) * face * soft_step(0.7 - elevation, 0.1)
     tone = expand_scalar(make_up.foundation_tone)
@@ -118,15 +147,14 @@ def _find_parts(
     return cheeks, chin, moustache, bridge
 
 
-def _list_make_up(make_up: CosmeticParameters, azimuth: Tensor, elevation: Tensor) -> list[_Layer]:
-    side = azimuth.abs()
-    rising = elevation - 0.25 * (side - 0.5)
-    cheeks = evaluate_gaussian(azimuth, rising, 0.55, -0.27, 0.2, 0.1)
-    lids = evaluate_gaussian(azimuth, elevation - 0.1 * (side - 0.34), 0.35, 0.095, 0.13, 0.042)
-    return [
-        (expand_colour(make_up.blush_colour), expand_scalar(make_up.blush) * cheeks),
-        (expand_colour(make_up.eye_shadow_colour), expand_scalar(make_up.eye_shadow) * lids),
-    ]
+def _find_cheeks(azimuth: Tensor, elevation: Tensor) -> Tensor:
+    rising = elevation - 0.25 * (azimuth.abs() - 0.5)
+    return evaluate_gaussian(azimuth, rising, 0.55, -0.27, 0.2, 0.1)
+
+
+def _find_lids(azimuth: Tensor, elevation: Tensor) -> Tensor:
+    rising = elevation - 0.1 * (azimuth.abs() - 0.34)
+    return evaluate_gaussian(azimuth, rising, 0.35, 0.095, 0.13, 0.042)
 
 
 def _find_lips(side: Tensor, elevation: Tensor) -> Tensor:
@@ -147,19 +175,25 @@ def _line_eyes(side: Tensor, elevation: Tensor) -> Tensor:
     return torch.maximum(upper, 0.6 * lower) * length
 
 
-def _paint(make_up: CosmeticParameters, azimuth: Tensor, elevation: Tensor) -> Tensor:
+def _paint(make_up: CosmeticParameters, azimuth: Tensor, elevation: Tensor) -> Layer:
+    worn = make_up.paint.nonzero()[:, 0]
     face = soft_step(1.2 - azimuth.abs(), 0.1) * soft_step(elevation + 1.05, 0.05)
-    return expand_scalar(make_up.paint) * face * soft_step(_resize(make_up.paint_noise), 0.12)
+    place = face * soft_step(_resize(make_up.paint_noise[worn]), 0.12)
+    return _spread(make_up.paint, make_up.paint_colour, place)
 
 
-def _stick_plaster(make_up: CosmeticParameters, azimuth: Tensor, elevation: Tensor) -> Tensor:
+def _stick_plaster(make_up: CosmeticParameters, azimuth: Tensor, elevation: Tensor) -> Layer:
     """A strip with round ends."""
-    centre, height, angle, length, width = (expand_scalar(one) for one in make_up.plaster.unbind(1))
+    worn = make_up.plaster_opacity.nonzero()[:, 0]
+    centre, height, angle, length, width = (
+        expand_scalar(one) for one in make_up.plaster[worn].unbind(1)
+    )
     x, y = azimuth - centre, elevation - height
     along = (x * angle.cos() + y * angle.sin()).abs() - (length - width)
     across = y * angle.cos() - x * angle.sin()
     distance = torch.hypot(along.clamp_min(0), across)
-    return expand_scalar(make_up.plaster_opacity) * soft_step(width - distance, 0.012)
+    place = soft_step(width - distance, 0.012)
+    return _spread(make_up.plaster_opacity, make_up.plaster_colour, place)
 
 
 def _resize(noise: Tensor) -> Tensor:

@@ -11,8 +11,9 @@ from torch import Tensor
 from skinnet.network.autoencoder import F_BLOOD_MAX, F_MEL_MAX
 from skinnet.shape._procedural_head import compute_chart_angles
 from train.synthetic._style_painting import (
-    cover_with_style,
+    Layer,
     even_out,
+    grow_beard,
     has_style,
     list_styled_layers,
 )
@@ -73,18 +74,29 @@ def paint_face(face: FaceParameters) -> FaceCharts:
     azimuth, elevation = (axis.to(device) for axis in compute_chart_angles(*CHART_SIZE))
     regions = _evaluate_regions(device)
     melanin, hemoglobin = _spread_pigments(face, regions)
-    colour, cover = torch.zeros_like(melanin).expand(-1, 3, -1, -1), torch.zeros_like(melanin)
+    colour, cover = torch.cat([torch.zeros_like(melanin)] * 3, 1), torch.zeros_like(melanin)
     layers = _list_layers(face.hair, face.features, azimuth, elevation, regions)
     bump = skin.bump
     oil = (0.8 + 0.7 * regions[2] + 0.5 * regions[0])[None, None].expand_as(cover)
     if has_style(face):
-        beard = cover_with_style(face.beard_style, azimuth.abs(), elevation)
-        layers = list_styled_layers(face, layers, beard, azimuth, elevation)
-        bump, oil = bump * (1 + 3 * beard), oil * (1 - 0.7 * beard)
-    for layer, opacity in layers:
-        colour = colour * (1 - opacity) + layer * opacity
-        cover = cover + opacity - cover * opacity
+        beard = grow_beard(face)
+        layers = list_styled_layers(face, layers, beard)
+        bump, oil = bump.clone(), oil.clone()
+        bump[beard.faces] *= 1 + 3 * beard.opacity
+        oil[beard.faces] *= 1 - 0.7 * beard.opacity
+    for layer in layers:
+        colour, cover = _put_on(colour, cover, layer)
     return FaceCharts(melanin, hemoglobin, colour / cover.clamp_min(1e-3), cover, oil, bump)
+
+
+def _put_on(colour: Tensor, cover: Tensor, layer: Layer) -> tuple[Tensor, Tensor]:
+    paint, opacity, faces = layer
+    if faces is None:
+        return colour * (1 - opacity) + paint * opacity, cover + opacity - cover * opacity
+    under = cover[faces]
+    colour[faces] = colour[faces] * (1 - opacity) + paint * opacity
+    cover[faces] = under + opacity - under * opacity
+    return colour, cover
 
 
 @cache
@@ -147,8 +159,8 @@ def _list_layers(
     azimuth: Tensor,
     elevation: Tensor,
     regions: Float[Tensor, "regions rows columns"],
-) -> list[tuple[Tensor, Tensor]]:
-    """Colour and opacity of what lies on the skin, from the skin outwards."""
+) -> list[Layer]:
+    """What lies on the skin, from the skin outwards."""
     side = azimuth.abs()
     hair_colour = expand_colour(hair.colour) * resize_to_chart(hair.strands).exp()
     dark = torch.tensor([0.03, 0.010, 0.008], device=side.device)[None, :, None, None]
@@ -156,10 +168,10 @@ def _list_layers(
     nostrils = evaluate_gaussian(azimuth, elevation, 0.075, -0.435, 0.028, 0.015)
     lips = (1.6 * regions[4]).clamp_max(1) * expand_scalar(features.make_up)
     return [
-        (expand_colour(features.lipstick), lips),
-        (hair_colour, cover_with_beard(hair.beard, side, elevation)),
-        (hair_colour, cover_with_brows(hair, side, elevation)),
-        (torch.full_like(dark, 0.015), cover_with_lashes(hair, side, elevation)),
-        (dark, 0.5 * mouth),
-        (dark, 0.8 * nostrils),
+        Layer(expand_colour(features.lipstick), lips),
+        Layer(hair_colour, cover_with_beard(hair.beard, side, elevation)),
+        Layer(hair_colour, cover_with_brows(hair, side, elevation)),
+        Layer(torch.full_like(dark, 0.015), cover_with_lashes(hair, side, elevation)),
+        Layer(dark, 0.5 * mouth),
+        Layer(dark, 0.8 * nostrils),
     ]

@@ -127,14 +127,13 @@ def _paint(
     place = scene.head.chart.movedim(-1, 1).float()[picture]
     charts = _sample_charts(_paint_charts(scene.face, paintings.number), place)
     varied = any(bool(deviation.any()) for deviation in skin.nuisance)
-    albedo = decoder.albedo(
-        charts.melanin[:, 0],
-        charts.hemoglobin[:, 0],
-        matrix[picture],
-        skin.nuisance if varied else None,
-    )
-    f_mel, f_blood = (one.fraction[:, None, None] for one in (skin.melanin, skin.hemoglobin))
-    own_skin = decoder.albedo(f_mel, f_blood, matrix[picture])
+    # A last row of each map has the base fractions, whose colour some garments share.
+    maps = [
+        torch.cat([one[:, 0], base.fraction[:, None, None].expand(-1, 1, one.shape[3])], 1)
+        for one, base in ((charts.melanin, skin.melanin), (charts.hemoglobin, skin.hemoglobin))
+    ]
+    albedo = decoder.albedo(*maps, matrix[picture], skin.nuisance if varied else None)
+    albedo, own_skin = albedo[:, :, :-1], albedo[:, :, -1:, :1]
     own_skin = own_skin / expand_colour(matrix.sum(-2))[picture]
     other = colour_materials(scene, label, place, charts.cover_colour, own_skin)
     # A picture has one amount of oil, that of its first painting.
