@@ -128,11 +128,11 @@ def _paint(
     charts = _sample_charts(_paint_charts(scene.face, paintings.number), place)
     varied = any(bool(deviation.any()) for deviation in skin.nuisance)
     # A last row of each map has the base fractions, whose colour some garments share.
-    maps = [
+    f_mel, f_blood = (
         torch.cat([one[:, 0], base.fraction[:, None, None].expand(-1, 1, one.shape[3])], 1)
         for one, base in ((charts.melanin, skin.melanin), (charts.hemoglobin, skin.hemoglobin))
-    ]
-    albedo = decoder.albedo(*maps, matrix[picture], skin.nuisance if varied else None)
+    )
+    albedo = decoder.albedo(f_mel, f_blood, matrix[picture], skin.nuisance if varied else None)
     albedo, own_skin = albedo[:, :, :-1], albedo[:, :, -1:, :1]
     own_skin = own_skin / expand_colour(matrix.sum(-2))[picture]
     other = colour_materials(scene, label, place, charts.cover_colour, own_skin)
