@@ -13,6 +13,7 @@ from train.synthetic.scene import (
     CosmeticParameters,
     FaceParameters,
     GarmentParameters,
+    SurroundingsParameters,
 )
 
 BEARD_SHARES = {"none": 0.56, "stubble": 0.18, "full": 0.1, "boxed": 0.05, "goatee": 0.05,
@@ -93,6 +94,22 @@ def add_style(face: FaceParameters, rng: np.random.Generator) -> FaceParameters:
     )
 
 
+def vary_surroundings(
+    surroundings: SurroundingsParameters, rng: np.random.Generator
+) -> SurroundingsParameters:
+    """Give one jacket, shirt and wall in seven each a colour that skin may have."""
+    jacket, shirt, wall = rng.random(3) < SKIN_COLOUR_SHARE
+    if jacket:
+        surroundings = surroundings._replace(**_make_tensors(jacket=_sample_skin_colour(rng)))
+    if shirt:
+        surroundings = surroundings._replace(**_make_tensors(shirt=_sample_skin_colour(rng)))
+    if wall:
+        shade = surroundings.wall / surroundings.wall.mean((1, 2), keepdim=True)
+        colour = torch.from_numpy(_sample_skin_colour(rng))
+        surroundings = surroundings._replace(wall=shade * colour[:, None, None])
+    return surroundings
+
+
 def fit_long_beard(face: FaceParameters) -> FaceParameters:
     """Let a full beard grow around the long one of a mesh."""
     style = face.beard_style
@@ -123,8 +140,8 @@ def _sample_beard(
             beard=full,
             stubble=rng.uniform(*STUBBLE_RANGE) if growing else 0.0,
             colour=colour.clip(0.004, 0.8),
-            edge=rng.normal(0, 1, (1, 28, 34)),
-            hairs=rng.normal(0, 1, (1, 84, 208)),
+            edge=rng.standard_normal((1, 28, 34), np.float32),
+            hairs=rng.standard_normal((1, 84, 208), np.float32),
         )
     )
 
@@ -227,4 +244,4 @@ def _sample_hue(rng: np.random.Generator) -> _Colour:
 
 
 def _make_tensors(**values: ArrayLike) -> dict[str, Tensor]:
-    return {name: torch.from_numpy(np.asarray(value, float)) for name, value in values.items()}
+    return {name: torch.from_numpy(np.asarray(value, np.float32)) for name, value in values.items()}

@@ -5,6 +5,7 @@ import torch
 from jaxtyping import Float
 
 from skinnet.physics import LIGHTS
+from train.synthetic._style_sampling import vary_surroundings
 from train.synthetic.face_sampling import make_tensors, sample_face
 from train.synthetic.labels import FILM, SKIN
 from train.synthetic.scene import (
@@ -48,9 +49,8 @@ def sample_scene(
     face = sample_face(rng, domain_randomised, variety)
     surroundings, light = _sample_surroundings(rng), sample_light(rng)
     camera = sample_camera(rng, head.label.shape[-1])
-    return SceneParameters(
-        head, *_finish_person(rng, face, surroundings, domain_randomised), light, camera
-    )
+    person = _finish_person(rng, face, surroundings, domain_randomised, variety)
+    return SceneParameters(head, *person, light, camera)
 
 
 Person = tuple[FaceParameters, SurroundingsParameters]
@@ -71,7 +71,7 @@ def sample_person(
         Face and surroundings in float32.
     """
     face = sample_face(rng, domain_randomised, variety)
-    return _finish_person(rng, face, _sample_surroundings(rng), domain_randomised)
+    return _finish_person(rng, face, _sample_surroundings(rng), domain_randomised, variety)
 
 
 def _finish_person(
@@ -79,9 +79,12 @@ def _finish_person(
     face: FaceParameters,
     surroundings: SurroundingsParameters,
     domain_randomised: bool,
+    variety: Variety,
 ) -> Person:
     if domain_randomised:
         face = _add_oil(face, float(np.exp(rng.exponential(RANDOMISED_OIL))))
+    if variety == "any":
+        surroundings = vary_surroundings(surroundings, rng)
     return map_tensors(torch.Tensor.float, face), map_tensors(torch.Tensor.float, surroundings)
 
 

@@ -2,17 +2,21 @@
 
 import numpy as np
 import pytest
+import torch
 
 from train.synthetic._style_painting import has_style
 from train.synthetic._style_sampling import (
     BEARD_SHARES,
     MAKE_UP_SHARE,
     OWN_SKIN_SHARE,
+    SKIN_COLOUR_SHARE,
     STUBBLE_RANGE,
     fit_long_beard,
+    vary_surroundings,
 )
 from train.synthetic.face_sampling import sample_face
 from train.synthetic.scene import FaceParameters
+from train.synthetic.scene_sampling import sample_person
 
 COUNT = 900
 
@@ -61,6 +65,18 @@ def test_some_cloth_has_the_colour_of_the_wearers_skin(faces: list[FaceParameter
     assert 0 < colours.min() and colours.max() <= 0.9
 
 
+def test_some_clothes_and_walls_have_a_colour_of_skin() -> None:
+    rng = np.random.default_rng(6)
+    _, before = sample_person(rng, variety="mild")
+    changed = np.zeros(3)
+    for _ in range(500):
+        after = vary_surroundings(before, rng)
+        pairs = ((after.jacket, before.jacket), (after.shirt, before.shirt))
+        changed += [*(not torch.equal(a, b) for a, b in pairs), after.wall is not before.wall]
+        assert 0 < after.jacket.min() and after.wall.mean() < 1.2
+    np.testing.assert_allclose(changed / 500, SKIN_COLOUR_SHARE, atol=0.05)
+
+
 def test_the_same_numbers_give_the_same_style_and_mild_faces_have_none() -> None:
     one, other = (sample_face(np.random.default_rng(8), variety="any") for _ in range(2))
     assert one.garments.colours.equal(other.garments.colours)
@@ -72,4 +88,4 @@ def test_the_same_numbers_give_the_same_style_and_mild_faces_have_none() -> None
 
 def test_a_long_beard_has_a_full_one_around_it(faces: list[FaceParameters]) -> None:
     style = fit_long_beard(faces[0]).beard_style
-    assert style.parts.tolist() == [1, 1, 1, 1] and float(style.beard) >= 0.9
+    assert style.parts.tolist() == [1, 1, 1, 1] and float(style.beard) > 0.89
