@@ -20,9 +20,8 @@ _REFERENCE = ("forehead", "left_cheek", "right_cheek", "nose")
 _BEARDED = ("chin", "neck")
 
 _BEARD = 0.24
-"""Difference of log R/G from the skin from which on chin and neck are taken for a grey beard: it is
-the least of those with such a beard in 511 pairs of portraits, and 3 in 100 chins without one have
-more."""
+"""Difference of log R/G from the skin from which on chin and neck are taken for a grey beard. It
+takes a third or more from 17 of 952 chins in portraits; 11 of them have a beard."""
 
 _BEARD_DETAIL = 0.1
 """Size of the neighbourhood over which that is averaged, in sides of the region's box."""
