@@ -1,4 +1,4 @@
-"""Landmarks beside the templates of the London set.
+"""Landmarks and the white of the eyes, beside the templates of the London set.
 
 A template has 189 points of its own. A few mark the same place as a point of the mesh; the others
 lie on an outline that the mesh has too, and are compared with that line.
@@ -8,6 +8,7 @@ from collections.abc import Mapping, Sequence
 
 import numpy as np
 from numpy.typing import NDArray
+from skimage.measure import points_in_poly
 
 from benchmarks.portrait_faces import LEFT_EYE, RIGHT_EYE
 
@@ -42,6 +43,9 @@ LINES: Mapping[str, Lines] = {
 }
 """Points of a template, and the point or line of the mesh on which they lie, by feature."""
 
+EYES = ((18, 19, 20, 21, 22, 30, 29, 28), (23, 24, 25, 26, 27, 33, 32, 31))
+"""Outlines of a template's eyes."""
+
 
 def measure_distances(template: Points, landmarks: Points) -> dict[str, list[float]]:
     """Measure distances from a template's points to the mesh, relative to that between the eyes.
@@ -70,6 +74,13 @@ def measure_distance(point: Points, line: Points) -> float:
     share = ((point - start) * ends).sum(1) / (ends**2).sum(1).clip(1e-9)
     nearest = start + share.clip(0, 1)[:, None] * ends
     return float(np.linalg.norm(point - nearest, axis=1).min())
+
+
+def find_inside(template: Points, places: Points) -> NDArray[np.bool_]:
+    """Find which places [N, 2], from the picture's corner, are in the eyes of a template."""
+    outlines = [template[list(eye)] + 0.5 for eye in EYES]
+    inside: NDArray[np.bool_] = np.any([points_in_poly(places, one) for one in outlines], 0)
+    return inside
 
 
 def summarise(distances: Sequence[Mapping[str, Sequence[float]]]) -> dict[str, float]:

@@ -5,6 +5,7 @@ from collections.abc import Iterable, Iterator
 
 import numpy as np
 from numpy.typing import NDArray
+from PIL import Image
 
 from skinnet.images.faces._detector import Detection, detect_faces
 from skinnet.images.faces._face_mesh import find_landmarks
@@ -42,6 +43,9 @@ _SAME_FACE = 0.3
 _LARGE_PHOTO = 512
 """Longer side, in pixels, from which on parts are searched for small faces."""
 
+_COARSE = 75
+"""Longer side, in pixels, of a small photograph in which a noisy face is looked for."""
+
 _FAR = 1.6
 """Side of a view from afar, for faces that fill the photograph, relative to the longer side."""
 
@@ -78,16 +82,23 @@ def find_faces(photo: NDArray[np.uint8]) -> list[Face]:
         [<Face Box(left=170, top=59, right=279, bottom=168), tilt 2 degrees, score 1.00>]
     """
     found: list[_Placed] = []
-    _search(photo, _frame(photo.shape), _LEAST_DETECTION, found)
-    if not found:
-        _search(photo, _frame(photo.shape, _FAR), _LEAST_DETECTION, found)
+    _search_whole(photo, found)
     _search_parts(photo, found)
+    if not found and max(photo.shape[:2]) < _LARGE_PHOTO:
+        _search_whole(_smooth(photo), found)
     return sorted((face for _, face in found), key=lambda face: face.box.left + face.box.right)
 
 
 def choose_largest(faces: Iterable[Face]) -> Face | None:
     """The largest of some faces; None if there is none."""
     return max(faces, key=lambda face: face.box.width, default=None)
+
+
+def _search_whole(photo: NDArray[np.uint8], found: list[_Placed]) -> None:
+    """Add the faces of the whole photograph; from afar only if none is seen otherwise."""
+    _search(photo, _frame(photo.shape), _LEAST_DETECTION, found)
+    if not found:
+        _search(photo, _frame(photo.shape, _FAR), _LEAST_DETECTION, found)
 
 
 def _search(
@@ -130,6 +141,13 @@ def _frame(shape: tuple[int, ...], margin: float = 1.0) -> TurnedSquare:
     """A square around the whole photograph."""
     height, width = shape[:2]
     return TurnedSquare(width / 2, height / 2, margin * max(width, height))
+
+
+def _smooth(photo: NDArray[np.uint8]) -> NDArray[np.uint8]:
+    """Average over small squares; strong noise hides faces from the networks."""
+    image = Image.fromarray(photo)
+    smooth = image.reduce(max(2, round(max(image.size) / _COARSE)))
+    return np.array(smooth.resize(image.size, Image.Resampling.BILINEAR))
 
 
 def _confirm(photo: NDArray[np.uint8], detection: Detection) -> _Placed | None:
