@@ -135,12 +135,35 @@ def _turn_square(face: Face) -> TurnedSquare:
 
 def _bound(square: TurnedSquare, width: int, height: int) -> Box:
     """The part of a photograph that a square covers, as a rectangle."""
+    left, top, right, bottom = _list_ends(square)
+    return Box(max(0, left), max(0, top), min(right, width), min(bottom, height))
+
+
+def _list_ends(square: TurnedSquare) -> tuple[int, int, int, int]:
+    """Left, top, right and bottom of a square, which may exceed the photograph."""
     x, y = square.place(np.array([[0, 0], [0, 1], [1, 0], [1, 1]]), 1).T
-    left, right = (min(max(0, round(end)), width) for end in (x.min(), x.max()))
-    top, bottom = (min(max(0, round(end)), height) for end in (y.min(), y.max()))
-    return Box(left, top, right, bottom)
+    return round(x.min()), round(y.min()), round(x.max()), round(y.max())
 
 
 def _cut_smoothly(square: TurnedSquare, photo: NDArray[np.uint8], size: int) -> NDArray[np.uint8]:
-    """Cut a square at twice the size, and average: a turned cut interpolates single pixels."""
-    return resize(square.cut(photo, 2 * size), size, size)
+    """Cut a square at twice the size, and average: a turned cut interpolates single pixels.
+
+    What is outside the photograph is its mirror image: grey there would be read as darker skin.
+    """
+    left, top, right, bottom = _list_ends(square)
+    box = _bound(square, photo.shape[1], photo.shape[0])
+    scale = min(1.0, 2 * size / square.side)
+    width, height = (max(1, round(side * scale)) for side in (box.width, box.height))
+    columns = _scale(scale, box.left - left, right - box.right)
+    rows = _scale(scale, box.top - top, bottom - box.bottom)
+    part = resize(photo[box.slices], width, height)
+    mirrored = np.pad(part, (rows, columns, (0, 0)), "symmetric")
+    x = (square.x - box.left) * width / box.width + columns[0]
+    y = (square.y - box.top) * height / box.height + rows[0]
+    moved = TurnedSquare(x, y, square.side * scale, square.tilt)
+    return resize(moved.cut(mirrored, 2 * size), size, size)
+
+
+def _scale(scale: float, *lengths: int) -> tuple[int, ...]:
+    """Lengths in whole pixels, and one more."""
+    return tuple(math.ceil(length * scale) + 1 for length in lengths)
