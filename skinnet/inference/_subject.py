@@ -11,8 +11,9 @@ from skinnet.images._colour_content import check_colour, refuse_grey
 from skinnet.images.box import Box
 from skinnet.images.faces.face import Face
 from skinnet.images.faces.finder import find_faces
+from skinnet.inference._face_checks import check_face
 from skinnet.inference._face_choice import FaceChoice, check_choice, choose_faces, note_others
-from skinnet.inference._head_crop import Arrays, HeadCrop, crop_head, place_face
+from skinnet.inference._head_crop import Arrays, HeadCrop, crop_head
 
 Region = Literal["face", "skin"]
 """Faces, or whatever skin the photograph shows."""
@@ -21,9 +22,6 @@ _BARE_SKIN = (
     "The whole image was read, without a search for a face. The network learnt from faces: melanin "
     "of a bare patch of skin can be a third more or less than that of the same skin in its face."
 )
-
-_COLOUR_SIZE = 512
-"""Largest size, in pixels, at which the colours of a turned head are judged."""
 
 
 class Subject(NamedTuple):
@@ -92,22 +90,29 @@ def _find_face_subjects(photo: NDArray[np.uint8], name: str, faces: FaceChoice) 
             "without a face."
         )
     chosen = choose_faces(found, faces)
-    notes = note_others(len(found), len(chosen), name)
-    subjects = []
+    subjects, refused = [], []
     for index in chosen:
-        crop = crop_head(found[index], photo.shape)
-        _check_face_colour(photo, crop, found[index], name)
-        subjects.append(Subject(crop, found[index], index + 1, found, notes))
-    return subjects
+        face = found[index]
+        who = f"The face in {name}" if len(found) == 1 else f"Face {index + 1} in {name}"
+        crop = crop_head(face, photo.shape)
+        try:
+            notes = check_face(photo, crop, face, who, name)
+        except InputError as error:
+            refused.append(error)
+        else:
+            subjects.append(Subject(crop, face, index + 1, found, notes))
+    if not subjects:
+        raise refused[0]
+    notes = (*note_others(len(found), len(chosen), name), *_note_refused(refused, len(chosen)))
+    return [each._replace(notes=(*each.notes, *notes)) for each in subjects]
 
 
-def _check_face_colour(photo: NDArray[np.uint8], crop: HeadCrop, face: Face, name: str) -> None:
-    if crop.square is None:
-        check_colour(photo, crop.box, face.box, name)
-        return
-    size = min(round(crop.square.side), _COLOUR_SIZE)
-    upright = crop.square.cut(photo, size)
-    check_colour(upright, Box(0, 0, size, size), place_face(size), name)
+def _note_refused(refused: Sequence[InputError], count: int) -> tuple[str, ...]:
+    """Note how many of the faces that were asked for are left out."""
+    if not refused:
+        return ()
+    were = "was" if len(refused) == 1 else "were"
+    return (f"{len(refused)} of {count} faces {were} left out. {refused[0]}",)
 
 
 def _measure_distance(face: Face, box: Box, shape: tuple[int, ...]) -> NDArray[np.float64]:
