@@ -19,9 +19,9 @@ _LEAST_WIDTH = 24
 _LEAST_INSIDE, _MOST_INSIDE = 0.5, 0.65
 """Share of a face inside the photograph below which it is refused, and below which that is said."""
 
-_COLOUR_SIZE, _FLAT_SIZE = 512, 96
+_COLOUR_SIZE, _FLAT_SIZE, _STEPS = 512, 96, 32
 """Largest sizes, in pixels, at which the colours of a turned head and the flatness of a face are
-judged."""
+judged; and points across a face that are looked for in the photograph."""
 
 _FLAT_SHARE = 0.25
 """Share of a face in one and the same colour above which it is drawn. The most of 1,757 portraits
@@ -56,7 +56,7 @@ def check_face(
             f"{who} is {face.box.width} pixels wide, and {_LEAST_WIDTH} are needed; give the "
             "picture at its full size."
         )
-    inside = _measure_inside(face, photo.shape)
+    inside = float(_find_inside(face, photo.shape, _STEPS).mean())
     if inside < _LEAST_INSIDE:
         raise InputError(
             f"{who} is only {inside:.0%} inside the picture, and half of it is needed; give a "
@@ -69,15 +69,18 @@ def check_face(
     return (f"{who} is only {inside:.0%} inside the picture; its means are those of this part.",)
 
 
-def _measure_inside(face: Face, photo: tuple[int, ...]) -> float:
-    """Share of the face's square that is inside a photograph of a shape [H, W, ...]."""
-    steps = (np.arange(32) + 0.5) / 32
-    x, y = _place_square(face).place(np.array(list(product(steps, steps))), 1).T
-    return float(np.mean((x > 0) & (y > 0) & (x < photo[1]) & (y < photo[0])))
+def _find_inside(face: Face, photo: tuple[int, ...], size: int) -> NDArray[np.bool_]:
+    """Whether pixels [size, size] of the face are inside a photograph of a shape [H, W, ...]."""
+    points = np.stack(np.meshgrid(*[np.arange(size) + 0.5] * 2), -1)
+    x, y = np.moveaxis(_place_square(face).place(points, size), -1, 0)
+    inside: NDArray[np.bool_] = (x > 0) & (y > 0) & (x < photo[1]) & (y < photo[0])
+    return inside
 
 
 def _refuse_drawing(photo: NDArray[np.uint8], face: Face, who: str) -> None:
-    share = _measure_flat_share(_place_square(face).cut(photo, min(_FLAT_SIZE, face.box.width)))
+    size = min(_FLAT_SIZE, face.box.width)
+    inside = _find_inside(face, photo.shape, size)
+    share = _measure_flat_share(_place_square(face).cut(photo, size)[inside])
     if share > _FLAT_SHARE:
         raise InputError(
             f"{who} seems to be drawn: {share:.0%} of it has one and the same colour. Give a "
@@ -86,7 +89,7 @@ def _refuse_drawing(photo: NDArray[np.uint8], face: Face, who: str) -> None:
 
 
 def _measure_flat_share(face: NDArray[np.uint8]) -> float:
-    """The largest share of a face [h, w, 3] in one colour, apart from saturated pixels."""
+    """The largest share of a face's pixels [n, 3] in one colour that is not saturated."""
     brightness = face.max(-1)
     middle = float(np.median(brightness))
     if middle < _DARK:

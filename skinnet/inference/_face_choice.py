@@ -2,7 +2,7 @@
 
 import operator
 from collections.abc import Sequence
-from typing import Literal
+from typing import Literal, SupportsIndex
 
 from skinnet.errors import InputError
 from skinnet.images.faces.face import Face
@@ -11,15 +11,12 @@ FaceChoice = Literal["all", "largest"] | int
 """All faces, the largest one, or a number of the largest."""
 
 
-def check_choice(faces: FaceChoice) -> None:
+def check_choice(faces: object) -> None:
     """Raise `InputError` if `faces` is neither a word that is known nor a number of faces."""
-    if faces in ("all", "largest"):
-        return
-    try:
-        count = 0 if isinstance(faces, bool | str) else operator.index(faces)
-    except TypeError:
-        count = 0
-    if count < 1:
+    count = 0
+    if isinstance(faces, SupportsIndex) and not isinstance(faces, bool):
+        count = operator.index(faces)
+    if count < 1 and faces not in ("all", "largest"):
         raise InputError(
             f"faces is all, largest, or how many of the largest, from 1; got {faces!r}."
         )

@@ -141,7 +141,7 @@ def _bound(square: TurnedSquare, width: int, height: int) -> Box:
 
 def _list_ends(square: TurnedSquare) -> tuple[int, int, int, int]:
     """Left, top, right and bottom of a square, which may exceed the photograph."""
-    x, y = square.place(np.array([[0, 0], [0, 1], [1, 0], [1, 1]]), 1).T
+    x, y = square.place(np.array([[0.0, 0.0], [0.0, 1.0], [1.0, 0.0], [1.0, 1.0]]), 1).T
     return round(x.min()), round(y.min()), round(x.max()), round(y.max())
 
 

@@ -7,20 +7,24 @@ import numpy as np
 from numpy.typing import NDArray
 
 from skinnet.errors import InputError, NoFaceError
+from skinnet.images._bare_skin import segment_bare_skin
 from skinnet.images._colour_content import check_colour, refuse_grey
 from skinnet.images.box import Box
 from skinnet.images.faces.face import Face
 from skinnet.images.faces.finder import find_faces
+from skinnet.images.resizing import resize
 from skinnet.inference._face_checks import check_face
 from skinnet.inference._face_choice import FaceChoice, check_choice, choose_faces, note_others
 from skinnet.inference._head_crop import Arrays, HeadCrop, crop_head
+from skinnet.inference.decomposition import SKIN_THRESHOLD
 
 Region = Literal["face", "skin"]
 """Faces, or whatever skin the photograph shows."""
 
 _BARE_SKIN = (
     "The whole image was read, without a search for a face. The network learnt from faces: melanin "
-    "of a bare patch of skin can be a third more or less than that of the same skin in its face."
+    "of a bare patch of skin can be a third more or less than that of the same skin in its face. "
+    "What has the colours of skin, such as wood or a beige wall, is taken for skin."
 )
 
 
@@ -32,6 +36,7 @@ class Subject(NamedTuple):
         face: The face in it; None if none was looked for.
         face_id: Number of the face, from 1, from left to right among all faces of the photograph.
         faces: All faces of the photograph, from left to right; None if none was looked for.
+        skin: Probability of skin in a photograph in which no face was looked for, float32 [H, W].
         notes: Sentences that the user should read.
     """
 
@@ -39,11 +44,19 @@ class Subject(NamedTuple):
     face: Face | None = None
     face_id: int | None = None
     faces: Sequence[Face] | None = None
+    skin: NDArray[np.float32] | None = None
     notes: tuple[str, ...] = ()
 
     def keep_own_skin(self, outputs: Arrays) -> dict[str, NDArray[np.float32]]:
-        """Set the mask to 0 where another face is nearer, measured in sides of each face."""
+        """Set the mask to 0 where another face is nearer, measured in sides of each face.
+
+        Without a face, the mask is that of the colours: the network's is the same share of a cheek
+        as of a wall.
+        """
         mask = outputs["mask"]
+        if self.skin is not None:
+            height, width = mask.shape[1:]
+            return dict(outputs) | {"mask": resize(self.skin, width, height)[None]}
         others = [face for face in self.faces or () if face is not self.face]
         if self.face is None or not others:
             return dict(outputs)
@@ -64,7 +77,8 @@ def find_subjects(
         region: "skin" to read the whole photograph, without a search for a face.
 
     Raises:
-        InputError: An argument is none of those, or the photograph has no colour.
+        InputError: An argument is none of those, the photograph has no colour, no face of those
+            that are asked for can be read, or no skin was found.
         NoFaceError: No face was found.
     """
     check_choice("largest" if faces is None else faces)
@@ -76,9 +90,19 @@ def find_subjects(
         raise InputError(
             f"faces={faces!r} is asked for, but region='skin' looks for no face; leave out one."
         )
+    return [_find_bare_skin(photo, name)]
+
+
+def _find_bare_skin(photo: NDArray[np.uint8], name: str) -> Subject:
     box = Box(0, 0, photo.shape[1], photo.shape[0])
     check_colour(photo, box, None, name)
-    return [Subject(HeadCrop(box), notes=(_BARE_SKIN,))]
+    skin = segment_bare_skin(photo)
+    if not (skin > SKIN_THRESHOLD).any():
+        raise InputError(
+            f"No skin was found in {name}: too little of it has the colours of skin under usual "
+            "light. Give a picture that skin fills, in daylight."
+        )
+    return Subject(HeadCrop(box), skin=skin, notes=(_BARE_SKIN,))
 
 
 def _find_face_subjects(photo: NDArray[np.uint8], name: str, faces: FaceChoice) -> list[Subject]:
@@ -100,7 +124,7 @@ def _find_face_subjects(photo: NDArray[np.uint8], name: str, faces: FaceChoice) 
         except InputError as error:
             refused.append(error)
         else:
-            subjects.append(Subject(crop, face, index + 1, found, notes))
+            subjects.append(Subject(crop, face, index + 1, found, notes=notes))
     if not subjects:
         raise refused[0]
     notes = (*note_others(len(found), len(chosen), name), *_note_refused(refused, len(chosen)))

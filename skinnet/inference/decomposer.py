@@ -139,8 +139,9 @@ class Decomposer:
             one for each face, from left to right.
 
         Raises:
-            InputError: An argument, the image or a model file cannot be used, or the image has no
-                colour: it is grey, or toned in sepia, cyanotype and the like.
+            InputError: An argument, the image or a model file cannot be used; the image has no
+                colour: it is grey, or toned in sepia, cyanotype and the like; the face is too
+                small, mostly outside the image, or drawn; or no skin was found.
             NoFaceError: No face was found.
 
         Example:
@@ -185,8 +186,8 @@ class Decomposer:
             The edited photograph, uint8 sRGB [H, W, 3].
 
         Raises:
-            InputError: An argument, the image or a model file cannot be used, or the image has no
-                colour.
+            InputError: An argument, the image or a model file cannot be used, or the image cannot
+                be read, as when it is called.
             NoFaceError: No face was found.
 
         Example:
@@ -228,7 +229,8 @@ class Decomposer:
             The edited picture. Pixels that are not skin keep their stored values.
 
         Raises:
-            InputError: An argument or a model file cannot be used, or the picture has no colour.
+            InputError: An argument or a model file cannot be used, or the picture cannot be read,
+                as when it is called.
             NoFaceError: No face was found.
 
         Example:

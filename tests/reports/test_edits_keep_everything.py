@@ -54,7 +54,7 @@ def load() -> Decomposer:
 @cache
 def edit_srgb() -> np.ndarray:
     """The edit of the face in sRGB, which is the right result for every file."""
-    return load().edit(FACE, melanin=2.0, hemoglobin=1.5, whole_image=True)
+    return load().edit(FACE, melanin=2.0, hemoglobin=1.5)
 
 
 def edit(path: Path, suffix: str | None = None) -> tuple[Path, tuple[str, ...]]:
@@ -62,7 +62,7 @@ def edit(path: Path, suffix: str | None = None) -> tuple[Path, tuple[str, ...]]:
     picture = read_picture(path)
     chosen, notes = choose_suffix(picture, path.suffix)
     target = path.with_name(f"{path.stem}_edited{suffix or chosen}")
-    edited = load().edit_picture(picture, 2.0, 1.5, whole_image=True)
+    edited = load().edit_picture(picture, 2.0, 1.5)
     return target, (*notes, *write_picture(target, edited, MARK))
 
 
@@ -227,7 +227,7 @@ def test_an_edit_that_changes_nothing_keeps_every_pixel(tmp_path: Path) -> None:
     for dtype, name in ((np.uint8, "a.png"), (np.uint16, "a.tif")):
         stored = encode("Display P3", dtype)
         path = save(tmp_path / name, stored, icc_profile=PROFILES["Display P3"])
-        picture = load().edit_picture(read_picture(path), whole_image=True)
+        picture = load().edit_picture(read_picture(path))
         np.testing.assert_array_equal(picture.pixels, stored)
 
 
@@ -278,7 +278,7 @@ def test_a_turned_photograph_becomes_upright_once(
         assert image.getexif().get(0x0112, 1) == 1
         inner = image.getexif().get_ifd(0x8769)
         assert (inner[0xA002], inner[0xA003]) == (upright.shape[1], upright.shape[0])
-    right = load().edit(upright, 2.0, 1.5, whole_image=True)
+    right = load().edit(upright, 2.0, 1.5)
     tolerance = 0 if suffix in LOSSLESS else CODEC
     assert np.quantile(np.abs(load_pixels(path).astype(int) - right), 0.99) <= tolerance
 
@@ -506,11 +506,11 @@ def test_a_profile_without_a_way_back_becomes_srgb_in_words(tmp_path: Path) -> N
     path = save(tmp_path / "a.tif", encode("sRGB", np.uint16), icc_profile=make_scanner_profile())
     picture = read_picture(path)
     assert picture.colour_space.profile == make_scanner_profile()
-    edited = load().edit_picture(picture, 2.0, 1.5, whole_image=True)
+    edited = load().edit_picture(picture, 2.0, 1.5)
     assert "is converted from ink, which is only read, to sRGB" in edited.notes[-1]
     write_picture(tmp_path / "b.tif", edited)
     assert load_profile(tmp_path / "b.tif") is None
-    right = load().edit(picture.srgb, 2.0, 1.5, whole_image=True)
+    right = load().edit(picture.srgb, 2.0, 1.5)
     difference = np.abs(tifffile.imread(tmp_path / "b.tif") / 257 - right)
     assert np.quantile(difference, 0.99) <= 2
 
@@ -557,7 +557,7 @@ def test_cmyk_with_a_profile_stays_so(tmp_path: Path, suffix: str, dtype: type) 
     assert notes == () and load_profile(target) == profile
     result = load_pixels(target)
     assert result.shape == stored.shape and result.dtype == dtype
-    right = load().edit(before.srgb, 2.0, 1.5, whole_image=True)
+    right = load().edit(before.srgb, 2.0, 1.5)
     if suffix == ".tif":
         untouched = (right == before.srgb).all(-1)
         assert (result == stored).all(-1)[untouched].mean() > 0.99
@@ -632,7 +632,7 @@ def test_what_a_format_cannot_hold_is_said(tmp_path: Path, case: str) -> None:
     assert len(notes) == len([word for word in words if "texts (" not in word or suffix != ""])
     assert read_mark(path) == MARK
     right = read_picture(tmp_path / "a.png")
-    edited = load().edit_picture(right, 2.0, 1.5, whole_image=True).srgb.astype(int)
+    edited = load().edit_picture(right, 2.0, 1.5).srgb.astype(int)
     assert np.quantile(np.abs(read_picture(path).srgb - edited), 0.98) <= CODEC
 
 

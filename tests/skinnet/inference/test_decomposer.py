@@ -71,13 +71,69 @@ def test_without_a_face_nothing_is_guessed(decomposer: Decomposer, tmp_path: Pat
     assert "bare patch of skin" in read.notes[-1]
 
 
-@pytest.mark.parametrize("shape", [(1, 1), (1, 300), (37, 53), (200, 90)])
-def test_any_size_is_decomposed_whole(decomposer: Decomposer, shape: tuple[int, int]) -> None:
-    photo = np.random.default_rng(0).integers(0, 255, (*shape, 3), np.uint8)
-    decomposition = decomposer(photo, whole_image=True)
+@pytest.mark.parametrize("shape", [(9, 300), (37, 53), (200, 90)])
+def test_skin_of_any_size_is_decomposed(decomposer: Decomposer, shape: tuple[int, int]) -> None:
+    noise = np.random.default_rng(0).integers(0, 9, (*shape, 3), np.uint8)
+    photo = np.array((200, 150, 130), np.uint8) + noise
+    decomposition = decomposer(photo, region="skin")
     assert decomposition.melanin.shape == shape
     assert decomposition.reconstruction.shape == photo.shape
-    assert decomposer.edit(photo, 2.0, 0.5, whole_image=True).shape == photo.shape
+    assert decomposition.face_id is None and decomposition.faces_found is None
+    assert decomposer.edit(photo, 2.0, 0.5, region="skin").shape == photo.shape
+
+
+@pytest.mark.parametrize("shape", [(1, 1), (1, 300), (60, 60)])
+def test_without_skin_nothing_is_guessed(decomposer: Decomposer, shape: tuple[int, int]) -> None:
+    photo = np.random.default_rng(0).integers(0, 255, (*shape, 3), np.uint8)
+    with pytest.raises(InputError, match="No skin was found in the image"):
+        decomposer(photo, region="skin")
+    with pytest.raises(InputError, match="No skin was found in the image"):
+        decomposer.edit(photo, 2.0, region="skin")
+
+
+def test_both_words_for_skin_give_the_same(decomposer: Decomposer, astronaut: np.ndarray) -> None:
+    cheek = astronaut[110:150, 235:260]
+    whole, skin = decomposer(cheek, whole_image=True), decomposer(cheek, region="skin")
+    np.testing.assert_array_equal(whole.melanin, skin.melanin)
+    assert (skin.mask > 0.5).mean() > 0.9
+    with pytest.raises(InputError, match="faces='all' is asked for, but region='skin' looks for"):
+        decomposer(cheek, region="skin", faces="all")
+
+
+def test_several_faces_are_read_from_left_to_right(
+    decomposer: Decomposer, astronaut: np.ndarray
+) -> None:
+    half = astronaut[:256, 96:352]
+    small = np.array(Image.fromarray(half).resize((160, 160)))
+    scene = np.full((256, 416, 3), 90, np.uint8)
+    scene[:, :256], scene[48:208, 256:] = half, small[:, ::-1]
+    left, right = decomposer(scene, faces="all")
+    assert [(each.face_id, each.faces_found) for each in (left, right)] == [(1, 2), (2, 2)]
+    assert left.summary()["id"] == 1 and left.summary()["faces_found"] == 2
+    assert not ((left.mask > 0.5) & (right.mask > 0.5)).any()
+    largest = decomposer(scene)
+    np.testing.assert_array_equal(largest.melanin, left.melanin)
+    assert largest.face_id == 1 and "1 more face was found in the image" in largest.notes[-1]
+    assert "--faces all" in largest.notes[-1] and left.notes == ()
+    assert [each.face_id for each in decomposer(scene, faces=2)] == [1, 2]
+    assert [each.face_id for each in decomposer(scene, faces=1)] == [1]
+
+
+def test_the_faces_that_are_asked_for_are_edited(
+    decomposer: Decomposer, astronaut: np.ndarray
+) -> None:
+    scene = np.concatenate([astronaut[:256, 96:352], astronaut[:256, 351:95:-1]], 1)
+    one, both = (decomposer.edit(scene, 3.0, faces=faces) for faces in ("largest", "all"))
+    changed = [(edited != scene).any((0, 2)) for edited in (one, both)]
+    assert changed[1][:256].any() and changed[1][256:].any()
+    assert not (changed[0][:200].any() and changed[0][300:].any())
+
+
+def test_no_faces_cannot_be_asked_for(decomposer: Decomposer, astronaut: np.ndarray) -> None:
+    with pytest.raises(InputError, match="faces is all, largest, or how many of the largest"):
+        decomposer(astronaut, faces=0)
+    with pytest.raises(InputError, match=r"largest, from 1; got -1\."):
+        decomposer.edit(astronaut, faces=-1)
 
 
 def test_an_edit_leaves_all_but_skin_untouched(
@@ -157,7 +213,7 @@ def test_an_edit_of_a_picture_keeps_its_depth_and_alpha(
     pixels = astronaut.astype(dtype) * (top // 255)
     alpha = np.full(pixels.shape[:2], top, dtype)
     alpha[:, :200] = 0
-    edited = decomposer.edit_picture(Picture("a", pixels, alpha), 2.0, whole_image=True)
+    edited = decomposer.edit_picture(Picture("a", pixels, alpha), 2.0)
     assert edited.pixels.dtype == dtype and edited.alpha is alpha
     np.testing.assert_array_equal(edited.pixels[:, :200], pixels[:, :200])
     assert (edited.pixels[:, 200:] != pixels[:, 200:]).any()
