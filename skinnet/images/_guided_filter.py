@@ -122,6 +122,8 @@ def enlarge_guided(
 
 def enlarge_rows(plane: _FloatImage, shape: tuple[int, ...], rows: slice) -> _FloatImage:
     """Rows of a plane resized bilinearly to a shape."""
+    if plane.shape == tuple(shape[:2]):
+        return plane[rows].copy()
     image, (height, width) = Image.fromarray(np.ascontiguousarray(plane)), shape[:2]
     scale = image.height / height
     box = (0, rows.start * scale, image.width, min(rows.stop * scale, image.height))

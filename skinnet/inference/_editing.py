@@ -5,13 +5,13 @@ from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
-from PIL import Image
 from scipy import ndimage
 
+from skinnet.images._guided_filter import enlarge_rows
 from skinnet.images.box import Box
 from skinnet.images.picture import Picture
 
-_RAMP_START, _RAMP_END = 0.25, 0.75
+_RAMP_START, _RAMP_END = 0.1, 0.9
 """Masks between which changes set in; pixels below the first keep their exact values."""
 
 FADE = 0.08
@@ -38,7 +38,7 @@ class ColourChange(NamedTuple):
 
 
 def soften_mask(mask: NDArray[np.float32]) -> NDArray[np.float32]:
-    """A weight that rises linearly from 0 to 1 between masks of 0.25 and 0.75."""
+    """A weight that rises linearly from 0 to 1 between masks of 0.1 and 0.9."""
     scale = np.float32(1 / (_RAMP_END - _RAMP_START))
     return ((mask - np.float32(_RAMP_START)) * scale).clip(0, 1)
 
@@ -76,15 +76,15 @@ def apply_change(
     """Change the diffuse reflection in a picture [H, W] by `change` [h, w], in its own pixels.
 
     The diffuse reflection is max(photo - specular, 0) in linear sRGB. The change is weighed by
-    `soften_mask`; `specular` and `mask` [h, w] have the size of `change`, and all three are
+    `soften_mask`; `specular` [h, w] has the size of `change`, `mask` any, and all three are
     enlarged to that of the crop. Pixels of weight 0, and transparent ones, keep their exact values.
     """
     pixels = crop.pixels
-    planes = np.stack([*np.moveaxis(np.concatenate(change, -1), -1, 0), specular, mask])
+    planes = [*np.moveaxis(np.concatenate(change, -1), -1, 0), specular, mask]
     height = pixels.shape[0]
     for top in range(0, height, _STRIP):
         rows = slice(top, min(top + _STRIP, height))
-        *parts, weight = (_enlarge(plane, pixels.shape[:2], rows) for plane in planes)
+        *parts, weight = (enlarge_rows(plane, pixels.shape[:2], rows) for plane in planes)
         skin = soften_mask(weight)
         if crop.alpha is not None:
             skin[crop.alpha[rows] == 0] = 0
@@ -109,17 +109,6 @@ def _change_pixels(
     edited = linear + weight[:, None] * added
     values: NDArray[Any] = here.with_linear(edited[None], changed[None]).pixels[0]
     return values
-
-
-def _enlarge(
-    plane: NDArray[np.float32], shape: tuple[int, ...], rows: slice
-) -> NDArray[np.float32]:
-    """Rows of a plane resized bilinearly to a shape."""
-    image, (height, width) = Image.fromarray(np.ascontiguousarray(plane)), shape[:2]
-    scale = image.height / height
-    box = (0, rows.start * scale, image.width, min(rows.stop * scale, image.height))
-    size = (width, rows.stop - rows.start)
-    return np.array(image.resize(size, Image.Resampling.BILINEAR, box=box))
 
 
 def _fade_axis(count: int, at_start: bool, at_end: bool) -> NDArray[np.float64]:

@@ -21,6 +21,7 @@ from skinnet.images.srgb import srgb_to_linear
 from skinnet.inference._editing import ColourChange, apply_change, compute_change
 from skinnet.inference._face_choice import FaceChoice
 from skinnet.inference._onnx_pair import get_decoder_path, refuse_other_export
+from skinnet.inference._skin_mask import adopt_mask, find_skin
 from skinnet.inference._subject import Region, Subject, find_subjects
 from skinnet.inference._transparency import note_transparency
 from skinnet.inference.decomposition import Decomposition
@@ -256,8 +257,8 @@ class Decomposer:
         self, picture: Picture, subject: Subject, name: str, detail: bool
     ) -> Decomposition:
         photo, box = picture.srgb, subject.crop.box
-        encoder_outputs = self._encode(photo, subject)
-        layers = self._make_layers(photo[box.slices], encoder_outputs, detail)
+        encoder_outputs, skin = self._read(photo, subject)
+        layers = self._make_layers(photo[box.slices], encoder_outputs, skin, detail)
         alpha = None if picture.alpha is None else picture.alpha[box.slices]
         notes = note_transparency(alpha, layers.mask, name)
         return Decomposition(
@@ -288,17 +289,25 @@ class Decomposer:
     ) -> tuple[str, ...]:
         """Multiply the pigments of one subject in the pixels of `colour`. Returns notes."""
         box = subject.crop.box
-        encoder_outputs = self._encode(photo, subject)
+        encoder_outputs, skin = self._read(photo, subject)
         change = self._compute_change(encoder_outputs, factors)
-        skin = encoder_outputs["mask"][0]
-        mask = skin * subject.crop.fade(skin.shape, photo.shape)
+        fade = subject.crop.fade(change.loss.shape[:2], photo.shape)
+        mask = skin if fade.min() == 1 else skin * resize(fade, box.width, box.height)
         alpha = None if colour.alpha is None else colour.alpha[box.slices]
         crop = replace(colour, pixels=colour.pixels[box.slices], alpha=alpha)
         apply_change(crop, change, encoder_outputs["specular"][0], mask)
         return (
-            *note_transparency(alpha, resize(skin, box.width, box.height), name),
+            *note_transparency(alpha, skin, name),
             *subject.notes,
         )
+
+    def _read(
+        self, photo: NDArray[np.uint8], subject: Subject
+    ) -> tuple[_Arrays, NDArray[np.float32]]:
+        """Maps and capture of the subject's box, and its mask at the photograph's size."""
+        encoder_outputs = self._encode(photo, subject)
+        skin = find_skin(photo, subject, encoder_outputs["mask"][0])
+        return adopt_mask(encoder_outputs, skin, photo[subject.crop.box.slices]), skin
 
     def _encode(self, photo: NDArray[np.uint8], subject: Subject) -> _Arrays:
         """Maps [1, h, w] of the subject's box, and its capture [1, ...], at the working size."""
@@ -314,10 +323,14 @@ class Decomposer:
         return clipped
 
     def _make_layers(
-        self, crop: NDArray[np.uint8], encoder_outputs: _Arrays, detail: bool
+        self,
+        crop: NDArray[np.uint8],
+        encoder_outputs: _Arrays,
+        skin: NDArray[np.float32],
+        detail: bool,
     ) -> Layers:
         decoded = self._decode(encoder_outputs)
-        maps = {name: encoder_outputs[name][0] for name in (*MAP_NAMES, "mask")}
+        maps = {name: encoder_outputs[name][0] for name in MAP_NAMES} | {"mask": skin}
         height, width = crop.shape[:2]
         if not detail or max(height, width) <= max(decoded.shape[:2]):
             return enlarge_layers(maps, decoded, width, height)

@@ -61,7 +61,7 @@ def measure_log_colours(
     logs = np.log(linear)
     logs[0] -= logs[1]
     logs[2] -= logs[1]
-    height, width = maps["mask"].shape
+    height, width = maps["melanin"].shape
     return _fill_off_skin(logs[[0, 2, 1]], weight, (width, height))
 
 

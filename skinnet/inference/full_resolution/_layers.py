@@ -71,7 +71,7 @@ def sharpen_layers(
 
     Args:
         crop: uint8 sRGB [H, W, 3].
-        maps: The network's maps of the crop, [h, w] or [h, w, 3].
+        maps: The network's maps of the crop, [h, w] or [h, w, 3], and its mask of any size.
         decoded: The decoder's picture of these maps, sRGB [h, w, 3] in [0, 1].
         table: Colours of skin under the light and camera of the crop.
         shading_top: Largest shading.

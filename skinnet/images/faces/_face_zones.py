@@ -1,0 +1,104 @@
+"""Where the parts of a face are in a picture, by the landmarks of MediaPipe's mesh."""
+
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy import ndimage
+
+from skinnet.images.faces._outlines import Outline, fill_outlines
+
+_OVAL = (
+    *(10, 338, 297, 332, 284, 251, 389, 356, 454, 323, 361, 288, 397, 365, 379, 378, 400, 377),
+    *(152, 148, 176, 149, 150, 136, 172, 58, 132, 93, 234, 127, 162, 21, 54, 103, 67, 109),
+)
+_EYES = (
+    (33, 7, 163, 144, 145, 153, 154, 155, 133, 173, 157, 158, 159, 160, 161, 246),
+    (263, 249, 390, 373, 374, 380, 381, 382, 362, 398, 384, 385, 386, 387, 388, 466),
+)
+_BROWS = (
+    (70, 63, 105, 66, 107, 55, 65, 52, 53, 46),
+    (300, 293, 334, 296, 336, 285, 295, 282, 283, 276),
+)
+_LIPS = (61, 146, 91, 181, 84, 17, 314, 405, 321, 375, 291, 409, 270, 269, 267, 0, 37, 39, 40, 185)
+_MOUTH = (
+    *(78, 95, 88, 178, 87, 14, 317, 402, 318, 324),
+    *(308, 415, 310, 311, 312, 13, 82, 81, 80, 191),
+)
+_NOSTRILS = (98, 240, 64, 48, 115, 220, 45, 4, 275, 440, 344, 278, 294, 460, 327, 326, 2, 97)
+_JAW = (132, 58, 172, 136, 150, 149, 176, 148, 152, 377, 400, 378, 379, 365, 397, 288, 361)
+_BEARD = (234, *_JAW, 454, 425, 327, 2, 98, 205)
+
+_BROW, _CHIN = 9, 152
+_NECK = 0.45
+"""Length of the neck below the jaw, in distances from the brows to the chin."""
+
+
+class FaceZones(NamedTuple):
+    """Where the parts of a face are, bool [h, w] each.
+
+    Attributes:
+        face: The whole face, from the middle of the forehead to the chin.
+        eyes: What is between the lids.
+        brows: The eyebrows.
+        lips: Both lips, and what is between them.
+        mouth: What is between the lips.
+        nostrils: The lower half of the nose.
+        neck: Below the jaw.
+        beard: Where beards grow: cheeks, chin, and around the mouth.
+        down: Columns and rows from the brows to the chin, float [2].
+    """
+
+    face: NDArray[np.bool_]
+    eyes: NDArray[np.bool_]
+    brows: NDArray[np.bool_]
+    lips: NDArray[np.bool_]
+    mouth: NDArray[np.bool_]
+    nostrils: NDArray[np.bool_]
+    neck: NDArray[np.bool_]
+    beard: NDArray[np.bool_]
+    down: NDArray[np.float32]
+
+
+def mark_zones(landmarks: NDArray[np.float32], shape: tuple[int, ...]) -> FaceZones:
+    """Mark the parts of a face in a picture of a shape [h, w, ...].
+
+    Args:
+        landmarks: Columns and rows [478, 2] in pixels of that picture.
+        shape: Its rows and columns.
+    """
+
+    def mark(*outlines: tuple[int, ...]) -> NDArray[np.bool_]:
+        return _fill([landmarks[list(outline)] for outline in outlines], shape)
+
+    down = landmarks[_CHIN] - landmarks[_BROW]
+    jaw = landmarks[list(_JAW)]
+    neck = _fill([np.concatenate([jaw, jaw[::-1] + _NECK * down])], shape)
+    face = mark(_OVAL)
+    return FaceZones(
+        face,
+        mark(*_EYES),
+        mark(*_BROWS),
+        mark(_LIPS),
+        mark(_MOUTH),
+        mark(_NOSTRILS),
+        neck & ~face,
+        mark(_BEARD),
+        down,
+    )
+
+
+def _fill(outlines: list[Outline], shape: tuple[int, ...]) -> NDArray[np.bool_]:
+    """Pixels of a picture of a shape [h, w, ...] inside some outlines."""
+    filled = np.zeros(shape[:2], np.bool_)
+    patch = fill_outlines(outlines).clip(*shape[:2])
+    filled[patch.box.slices] = patch.inside
+    return filled
+
+
+def grow(zone: NDArray[np.bool_], distance: float) -> NDArray[np.bool_]:
+    """Grow a zone by a distance in pixels, along rows and columns; a negative one shrinks it."""
+    size = 2 * max(1, round(abs(distance))) + 1
+    extreme = ndimage.maximum_filter if distance > 0 else ndimage.minimum_filter
+    grown: NDArray[np.bool_] = extreme(zone.view(np.uint8), size).view(np.bool_)
+    return grown
