@@ -98,7 +98,7 @@ def _segment(photo: NDArray[np.uint8], points: _Image, prior: _Image, side: floa
     evidence = compute_log_density(distance, covariance + _SHADING)
     evidence = evidence - estimate_log_density(features, known)
     beard = _find_beard(features[..., 2], zones, seeds, side)
-    score = _judge_place(zones, prior, side) - 6 * _soften(beard, 0.01 * side)
+    score = _judge_place(zones, prior, side) - 12 * _soften(beard, 0.01 * side)
     score -= _judge_hair(_compare_nearby(features[..., 2], seeds, side), zones, side)
     score += _limit(evidence, features - mean, score, zones)
     score[zones.eyes | zones.mouth] = -8
@@ -108,7 +108,8 @@ def _segment(photo: NDArray[np.uint8], points: _Image, prior: _Image, side: floa
     filled = fill_gaps(own, zones, features - mean, beard, side)
     # Filled gaps overlap the skin around them, so that no seam is left.
     inside = _soften((own | filled) & grow(filled, 2.0), 0.7)
-    return np.maximum(probability * grow(own, 2.0), inside).clip(0, 1)
+    whole = np.maximum(probability * grow(own, 2.0), inside).clip(0, 1)
+    return np.where(zones.eyes | zones.mouth, np.float32(0), whole)
 
 
 def _choose_seeds(zones: FaceZones, prior: _Image, side: float) -> _Mask:

@@ -4,7 +4,6 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy import ndimage
 
-from skinnet.images._bare_skin import segment_bare_skin
 from skinnet.images._face_skin import segment_face_skin
 from skinnet.images.resizing import resize
 from skinnet.images.srgb import srgb_to_linear
@@ -30,12 +29,10 @@ def find_skin(
         Probability of skin in the subject's box, float32 [height, width].
     """
     box = subject.crop.box
-    mask = resize(coarse, box.width, box.height)
-    if not (coarse > SKIN_THRESHOLD).any():
-        return mask
-    if subject.face is None:
-        bare = segment_bare_skin(photo)
-        return bare if bare.any() else mask
+    if subject.skin is not None:
+        return subject.skin
+    if subject.face is None or not (coarse > SKIN_THRESHOLD).any():
+        return resize(coarse, box.width, box.height)
     landmarks = subject.face.landmarks - np.array([box.left, box.top], np.float32)
     mask = segment_face_skin(photo[box.slices], landmarks, coarse)
     own: NDArray[np.float32] = subject.keep_own_skin({"mask": mask[None]})["mask"][0]
