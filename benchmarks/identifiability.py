@@ -22,10 +22,10 @@ from torch.utils.data import default_collate
 
 from benchmarks.report import Results, main
 from skinnet.physics import Capture, SkinDecoder, SpectralCamera
-from train.synthetic.face_sampling import HEMOGLOBIN_RANGE, MELANIN_RANGE, sample_regions
+from train.synthetic.photography.simulated_camera import apply_tone_curve, simulate_sensor
+from train.synthetic.sampling.face_sampling import HEMOGLOBIN_RANGE, MELANIN_RANGE, sample_regions
+from train.synthetic.sampling.scene_sampling import sample_camera, sample_light
 from train.synthetic.scene import CameraParameters, LightParameters, map_tensors
-from train.synthetic.scene_sampling import sample_camera, sample_light
-from train.synthetic.simulated_camera import apply_tone_curve, simulate_sensor
 
 SAMPLES, SCORED, STEPS, BATCH = 70_000, 10_000, 1500, 4096
 SPECULAR = 0.032, 0.38

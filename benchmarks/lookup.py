@@ -33,10 +33,10 @@ from skinnet.physics import (
 )
 from skinnet.physics._posterior_nodes import PosteriorNodes, tabulate_nodes
 from skinnet.physics._posterior_table import PosteriorTable
-from train.synthetic.face_painting import FaceCharts, paint_face
-from train.synthetic.head_cast import make_blank_cast
+from train.synthetic.casts.head_cast import make_blank_cast
+from train.synthetic.painting.face_painting import FaceCharts, paint_face
+from train.synthetic.sampling.scene_sampling import sample_scene
 from train.synthetic.scene import map_tensors
-from train.synthetic.scene_sampling import sample_scene
 
 SIZE, NODES, ROUNDS, REPEATS = 1024, 256, 2, 3
 WORKERS = 2

@@ -28,10 +28,10 @@ from skinnet.images import linear_to_srgb, to_uint8
 from skinnet.mesh import Mesh, write_mesh
 from skinnet.physics import load_spectrum_to_srgb
 from skinnet.shape import load_shape_model, write_landmarks
-from train.synthetic.face_painting import FaceCharts, paint_face
-from train.synthetic.head_cast import make_blank_cast
+from train.synthetic.casts.head_cast import make_blank_cast
+from train.synthetic.painting.face_painting import FaceCharts, paint_face
+from train.synthetic.sampling.scene_sampling import sample_scene
 from train.synthetic.scene import FaceParameters, map_tensors
-from train.synthetic.scene_sampling import sample_scene
 
 LIGHT, CAMERA = "LED-B3", "Nikon D200"
 FILTER = np.array([[0.80, 0.05, 0.01], [0.03, 0.86, 0.04], [0.01, 0.06, 0.92]])

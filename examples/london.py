@@ -31,7 +31,7 @@ from skinnet.pipeline import ColourSettings, invert_texture
 from skinnet.pipeline._source import Source, choose_folder
 from skinnet.shape._procedural_head import compute_chart_angles
 from skinnet.texture import TextureSpace, WarpedTexture, warp_texture
-from train.synthetic.model_skins import save_model_skins
+from train.synthetic.sampling.model_skins import save_model_skins
 from train.synthetic.scene import CHART_SIZE
 from train.synthetic.skins import ChartPlaces, sample_model_skins
 

@@ -25,10 +25,10 @@ from train.fitted_scenes import (
 )
 from train.preset import check_preset
 from train.stream import StreamLoader, count_seen_samples
-from train.synthetic.face_sampling import sample_specular
-from train.synthetic.head_cache import SPLITS
+from train.synthetic.casts.head_cache import SPLITS
+from train.synthetic.sampling.face_sampling import sample_specular
+from train.synthetic.sampling.scene_sampling import sample_camera, sample_light
 from train.synthetic.scene import map_tensors
-from train.synthetic.scene_sampling import sample_camera, sample_light
 
 _MAPS = "_maps.npz"
 

@@ -17,16 +17,16 @@ from skinnet.network.autoencoder import F_BLOOD_MAX, F_MEL_MAX
 from skinnet.physics import SkinDecoder
 from skinnet.render import Scene, frame_face, trace_geometry
 from train.batch import Batch
-from train.synthetic.head_cast import cast_surface
-from train.synthetic.renderer import (
+from train.synthetic.casts.head_cast import cast_surface
+from train.synthetic.photography.renderer import (
     VisibleSkin,
     decode_normals,
     decode_sky_visibility,
     develop,
 )
+from train.synthetic.photography.shading import shade
+from train.synthetic.photography.simulated_camera import simulate_sensor
 from train.synthetic.scene import CameraParameters, LightParameters, SpecularParameters
-from train.synthetic.shading import shade
-from train.synthetic.simulated_camera import simulate_sensor
 from train.synthetic.tensors import expand_colour
 
 _YAW_SD, _PITCH_SD, _FIELD_OF_VIEW = 25.0, 8.0, 24.0
@@ -128,7 +128,7 @@ def _cast_view(scene: Scene, size: int, yaw: float, pitch: float) -> FittedView:
 
 @torch.no_grad()
 def render_fitted(scene: FittedScene, decoder: SkinDecoder, split: str = "train") -> Batch:
-    """Render photographs and their truth, as `train.synthetic.renderer.render` does.
+    """Render photographs and their truth, as `train.synthetic.photography.renderer.render` does.
 
     Args:
         scene: A batch of scenes.

@@ -31,8 +31,8 @@ from train.portraits import (
     find_crops,
     write_skipped,
 )
+from train.synthetic.casts.head_cast import make_blank_cast
 from train.synthetic.faces import SyntheticFaces
-from train.synthetic.head_cast import make_blank_cast
 from train.synthetic.scene import HeadBuffers
 
 

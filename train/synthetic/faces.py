@@ -13,17 +13,17 @@ from skinnet.physics import SkinDecoder
 from train.batch import Batch
 from train.preset import check_preset
 from train.stream import StreamLoader, count_seen_samples
-from train.synthetic._style_sampling import fit_long_beard
-from train.synthetic.body_sampling import sample_body
-from train.synthetic.head_cache import SPLITS, load_or_cast_heads
-from train.synthetic.head_cast import HeadCast
+from train.synthetic.casts.head_cache import SPLITS, load_or_cast_heads
+from train.synthetic.casts.head_cast import HeadCast
 from train.synthetic.labels import BEARD, BODY, MATERIALS
-from train.synthetic.measured_skins import MeasuredSkins
-from train.synthetic.model_skins import ModelSkins, apply_model_skin, load_model_skins
-from train.synthetic.paintings import collate_scenes, stack
-from train.synthetic.renderer import render
+from train.synthetic.painting.paintings import collate_scenes, stack
+from train.synthetic.photography.renderer import render
+from train.synthetic.sampling.body_sampling import sample_body
+from train.synthetic.sampling.measured_skins import MeasuredSkins
+from train.synthetic.sampling.model_skins import ModelSkins, apply_model_skin, load_model_skins
+from train.synthetic.sampling.scene_sampling import Person, meter_skin, sample_person, sample_scene
+from train.synthetic.sampling.style_sampling import fit_long_beard
 from train.synthetic.scene import FaceParameters, HeadBuffers, SceneParameters, map_tensors
-from train.synthetic.scene_sampling import Person, meter_skin, sample_person, sample_scene
 from train.synthetic.variety import Variety
 
 STAGES = {"fit": ("train", "val"), "validate": ("val",), "test": ("test",)}

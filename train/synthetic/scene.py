@@ -43,8 +43,8 @@ class PigmentParameters(NamedTuple):
     """How one pigment is spread over a face.
 
     `fraction` is a volume fraction; all other fields are natural logarithms of factors on it. They
-    belong to the six regions of `train.synthetic.face_painting`, to noise of three octaves, and to
-    `model_skin`, the chart of a skin of a hybrid model, which is 0 without one.
+    belong to the six regions of `train.synthetic.painting.face_painting`, to noise of three
+    octaves, and to `model_skin`, the chart of a skin of a hybrid model, which is 0 without one.
     """
 
     fraction: Float[Tensor, "*batch"]

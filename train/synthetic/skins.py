@@ -22,9 +22,8 @@ from skinnet.errors import InputError
 from skinnet.pipeline import embed_model
 from skinnet.shape import load_shape_model
 from train.fitted_scenes import average_texels
-from train.synthetic.model_skins import ModelSkins, save_model_skins
-from train.synthetic.scene import CHART_SIZE
-from train.synthetic.skin_charts import (
+from train.synthetic.sampling.model_skins import ModelSkins, save_model_skins
+from train.synthetic.sampling.skin_charts import (
     DAMPING,
     Charts,
     PigmentCharts,
@@ -32,6 +31,7 @@ from train.synthetic.skin_charts import (
     fade_to_border,
     find_bare_skin,
 )
+from train.synthetic.scene import CHART_SIZE
 
 ChartPlaces = Float[np.ndarray, "rows columns 2"]
 """Texture coordinates (u, v in [0, 1], v upwards) of each texel of a chart; NaN is outside."""

@@ -1,7 +1,20 @@
 """Small tensor functions that the synthetic renderer shares."""
 
+import numpy as np
+import torch
 from jaxtyping import Float
+from numpy.typing import ArrayLike
 from torch import Tensor
+
+
+def make_tensors(**values: ArrayLike) -> dict[str, Tensor]:
+    """Turn named numbers and arrays into tensors of their own dtype."""
+    return {name: torch.from_numpy(np.asarray(value)) for name, value in values.items()}
+
+
+def make_float_tensors(**values: ArrayLike) -> dict[str, Tensor]:
+    """Turn named numbers and arrays into tensors of float32."""
+    return {name: torch.from_numpy(np.asarray(value, np.float32)) for name, value in values.items()}
 
 
 def expand_scalar(value: Float[Tensor, "batch"]) -> Float[Tensor, "batch 1 1 1"]:

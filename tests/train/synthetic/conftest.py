@@ -6,11 +6,11 @@ import numpy as np
 import pytest
 from torch.utils.data import default_collate
 
+from train.synthetic.bodies.ict_model import IctModel, read_ict_model
+from train.synthetic.bodies.labelled_mesh import LabelledMesh
 from train.synthetic.faces import SyntheticFaces, SyntheticScenes
-from train.synthetic.heads import make_ict_head, make_procedural_head
-from train.synthetic.ict_model import IctModel, read_ict_model
-from train.synthetic.labelled_mesh import LabelledMesh
 from train.synthetic.scene import SceneParameters
+from train.synthetic.subjects.heads import make_ict_head, make_procedural_head
 
 
 @pytest.fixture(scope="session")

@@ -7,8 +7,8 @@ import pytest
 import torch
 from torch.utils.data import DataLoader
 
-from train.synthetic.face_sampling import MELANIN_RANGE, RANDOMISED_MELANIN_RANGE
 from train.synthetic.faces import SyntheticFaces, SyntheticScenes
+from train.synthetic.sampling.face_sampling import MELANIN_RANGE, RANDOMISED_MELANIN_RANGE
 from train.synthetic.scene import SceneParameters, map_tensors
 
 

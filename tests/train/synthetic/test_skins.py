@@ -15,13 +15,13 @@ from skinnet.appearance.stack_writer import write_stack
 from skinnet.errors import InputError
 from skinnet.physics import load_spectrum_to_srgb
 from skinnet.shape._procedural_head import compute_chart_angles
-from train.synthetic.face_painting import paint_face
+from train.synthetic.casts.head_cast import make_blank_cast
 from train.synthetic.faces import SyntheticFaces, SyntheticScenes
-from train.synthetic.head_cast import make_blank_cast
-from train.synthetic.model_skins import ModelSkins, load_model_skins, save_model_skins
+from train.synthetic.painting.face_painting import paint_face
+from train.synthetic.sampling.model_skins import ModelSkins, load_model_skins, save_model_skins
+from train.synthetic.sampling.scene_sampling import sample_scene
+from train.synthetic.sampling.skin_charts import fill_gaps, find_bare_skin
 from train.synthetic.scene import CHART_SIZE, FaceParameters, HeadBuffers, map_tensors
-from train.synthetic.scene_sampling import sample_scene
-from train.synthetic.skin_charts import fill_gaps, find_bare_skin
 from train.synthetic.skins import find_procedural_places, main, sample_model_skins
 
 SIZE = 64

@@ -5,7 +5,7 @@ from pathlib import Path
 
 import pytest
 
-from train.synthetic import head_cache
+from train.synthetic.casts import head_cache
 from train.synthetic.faces import SyntheticFaces
 
 KNOWN = {

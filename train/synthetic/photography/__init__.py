@@ -1,0 +1,1 @@
+"""Light, camera and renderer, which turn casts and paintings into photographs and their truth."""
