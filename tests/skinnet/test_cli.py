@@ -145,6 +145,24 @@ def test_a_list_goes_on_after_a_bad_file(
     assert names(tmp_path / "skinmaps") == FILES
 
 
+def test_faces_that_cannot_be_read_do_not_stop_a_run(
+    predict: Predict,
+    photo: Path,
+    tmp_path: Path,
+    astronaut: np.ndarray,
+    capsys: pytest.CaptureFixture[str],
+) -> None:
+    Image.fromarray(astronaut).resize((96, 96)).save(tmp_path / "small.png")
+    Image.fromarray(astronaut[200:]).save(tmp_path / "suit.png")
+    assert predict(tmp_path, "--json", "--faces", "all") == 2
+    out, err = capsys.readouterr()
+    (summary,) = (json.loads(line) for line in out.splitlines())
+    assert summary["file"] == str(photo) and summary["id"] == summary["faces_found"] == 1
+    assert f"The face in {tmp_path / 'small.png'} is 2" in err and "and 24 are needed" in err
+    assert f"No face was found in {tmp_path / 'suit.png'}" in err
+    assert "1 read, 0 passed over, 1 without a face, 1 could not be read." in err
+
+
 def test_without_a_face_the_option_is_named(
     predict: Predict, tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
