@@ -315,12 +315,11 @@ def _crop_face(found: Found, size: int) -> Crop | Skipped:
         photo = read_photo(path)
     except InputError as error:
         return Skipped(path, str(error), readable=False)
-    largest = choose_largest(find_faces(photo))
-    face = None if largest is None else largest.box
+    face = choose_largest(find_faces(photo))
     if face is None:
         return Skipped(path, "No face was found in it.", readable=True)
-    box = frame_head(face, photo.shape[1], photo.shape[0])
-    tone = find_tone(photo, box, face)
+    box = frame_head(face.box, photo.shape[1], photo.shape[0])
+    tone = find_tone(photo, box, face.box)
     if tone is not None:
         return Skipped(path, f"It has no colour: {tone}.", readable=True, colourless=True)
     mask = segment_skin(photo, face)[box.slices]

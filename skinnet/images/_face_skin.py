@@ -14,7 +14,7 @@ from skinnet.images._skin_colours import (
     fit_normal,
     measure_distance,
 )
-from skinnet.images._skin_gaps import fill_gaps
+from skinnet.images._skin_gaps import fill_gaps, keep_small
 from skinnet.images.faces._face_place import place_face
 from skinnet.images.faces._face_zones import FaceZones, grow, mark_zones
 from skinnet.images.resizing import resize
@@ -48,7 +48,8 @@ to the upper face. Of 63 people those with full beards have a roughness of 1.75 
 median of the lower face, all others 1.25 or less."""
 
 _LEAST_BEARD = 0.02
-"""Least area of a beard inside the face, in areas of the face's box."""
+"""Least area of a beard inside the face, in areas of the face's box, a third of it on both sides:
+the shadow of a nose or a smile is on one."""
 
 _EDGE_RADIUS, _EDGE_VARIANCE = 0.016, 3e-4
 """Radius and variance of the guided filter that finds the edge at full resolution."""
@@ -169,11 +170,13 @@ def _find_beard(log: NDArray[Any], zones: FaceZones, seeds: _Mask, side: float) 
     area = (dark > _BEARD_DARKNESS) & (rough > _BEARD_ROUGHNESS * np.median(rough[upper]))
     area &= (zones.beard | zones.neck) & ~grow(zones.lips, 0.03 * side)
     area = ndimage.binary_opening(area, iterations=max(1, round(0.02 * side)))
-    labels, count = ndimage.label(area)
-    inside = np.bincount(labels[grow(zones.face, -0.06 * side)], minlength=count + 1)
-    is_beard = inside > _LEAST_BEARD * side**2
-    is_beard[0] = False
-    return grow(is_beard[labels], 0.01 * side)
+    area &= ~keep_small(area, 0.5 * _LEAST_BEARD * side**2)
+    inside = area & grow(zones.face, -0.06 * side)
+    right = np.count_nonzero(inside & zones.right)
+    both_sides = min(right, np.count_nonzero(inside) - right)
+    if both_sides < _LEAST_BEARD * side**2 / 3:
+        return np.zeros(log.shape, np.bool_)
+    return grow(area, 0.01 * side)
 
 
 def _find_own(skin: _Mask, zones: FaceZones, prior: _Image, side: float) -> _Mask:

@@ -1,5 +1,6 @@
 """The guided filter: an image that follows the edges of a photograph, also at a larger size."""
 
+import math
 from typing import NamedTuple
 
 import numpy as np
@@ -109,9 +110,13 @@ def enlarge_guided(
     (height, width), size = photo.shape[:2], (image.shape[1], image.shape[0])
     small = make_guide(resize(photo, *size))
     planes = [*(model := fit_guide(small, image, radius, epsilon)).slopes, model.intercept]
-    enlarged = np.empty((height, width), np.float32)
-    for top in range(0, height, _STRIP):
-        rows = slice(top, min(top + _STRIP, height))
+    enlarged = np.zeros((height, width), np.float32)
+    scale = height / image.shape[0]
+    used = np.flatnonzero(image.any(1)) if image.any() else np.zeros(1, np.intp)
+    first = max(0, math.floor((used[0] - 2 * radius - 1) * scale))
+    last = min(height, math.ceil((used[-1] + 2 * radius + 2) * scale))
+    for top in range(first, last, _STRIP):
+        rows = slice(top, min(top + _STRIP, last))
         *slopes, total = (enlarge_rows(plane, (height, width), rows) for plane in planes)
         guide = make_guide(photo[rows])
         for channel, slope in enumerate(slopes):

@@ -6,8 +6,10 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy import ndimage
 
+from skinnet.images._face_skin import segment_face_skin
 from skinnet.images._skin_colours import compute_features, fit_normal, measure_distance, step_down
 from skinnet.images.box import Box
+from skinnet.images.faces.face import Face
 from skinnet.images.faces.framing import frame_head
 from skinnet.images.resizing import resize
 from skinnet.images.srgb import srgb_to_linear
@@ -28,15 +30,17 @@ SKIN_AREAS: tuple[_Rectangle, ...] = (
 pixels are outliers."""
 
 
-def segment_skin(photo: NDArray[np.uint8], face: Box) -> NDArray[np.float32]:
+def segment_skin(photo: NDArray[np.uint8], face: Box | Face) -> NDArray[np.float32]:
     """Segment the skin of one face: the pseudo ground truth for training on photographs.
 
     The colour model is applied inside an ellipse around the head and a rectangle for the neck.
-    Eyes, brows, hair, beard and lips are left out where their colours differ from the skin's.
+    Eyes, brows, hair, beard and lips are left out where their colours differ from the skin's. With
+    landmarks, eyes, brows, nostrils, the open mouth and dense beards are left out by their places,
+    highlights, stubble and the shadow below the chin are skin, and bare lips are.
 
     Args:
         photo: uint8 sRGB [H, W, 3].
-        face: The face's box, from the brows to the chin, as `find_faces` gives it.
+        face: The face, as `find_faces` gives it, or its box from the brows to the chin.
 
     Returns:
         Probability of skin, float32 [H, W] in [0, 1].
@@ -49,18 +53,28 @@ def segment_skin(photo: NDArray[np.uint8], face: Box) -> NDArray[np.float32]:
         (True, True)
     """
     height, width = photo.shape[:2]
-    around = frame_head(face, width, height, margin=2.4)
+    box = face.box if isinstance(face, Face) else face
+    around = frame_head(box, width, height, margin=2.4)
     mask = np.zeros((height, width), np.float32)
     if min(around.width, around.height) < 1:
         return mask
     crop = photo[around.slices]
+    coarse = _segment_crop(crop, around, box)
+    if isinstance(face, Face):
+        corner = np.array([around.left, around.top], np.float32)
+        mask[around.slices] = segment_face_skin(crop, face.landmarks - corner, coarse)
+    else:
+        mask[around.slices] = resize(coarse, around.width, around.height).clip(0, 1)
+    return mask
+
+
+def _segment_crop(crop: NDArray[np.uint8], around: Box, face: Box) -> NDArray[np.float32]:
+    """Probability of skin in a crop [H, W, 3], whose box is `around`, at a smaller size."""
     longer = max(crop.shape[:2])
     ratio = longer / round(_FACE_SIZE * longer / face.width)
     small = resize(crop, max(1, round(around.width / ratio)), max(1, round(around.height / ratio)))
     inside = [(value - start) / ratio for value, start in zip(face, around[:2] * 2, strict=True)]
-    probability = _segment(small, (inside[0], inside[1], inside[2], inside[3]))
-    mask[around.slices] = resize(probability, around.width, around.height).clip(0, 1)
-    return mask
+    return _segment(small, (inside[0], inside[1], inside[2], inside[3]))
 
 
 def _segment(crop: NDArray[np.uint8], face: _Rectangle) -> NDArray[np.float32]:

@@ -46,6 +46,7 @@ class FaceZones(NamedTuple):
         nostrils: The lower half of the nose.
         neck: Below the jaw.
         beard: Where beards grow: cheeks, chin, and around the mouth.
+        right: The half of the picture on the person's right.
         down: Columns and rows from the brows to the chin, float [2].
     """
 
@@ -57,6 +58,7 @@ class FaceZones(NamedTuple):
     nostrils: NDArray[np.bool_]
     neck: NDArray[np.bool_]
     beard: NDArray[np.bool_]
+    right: NDArray[np.bool_]
     down: NDArray[np.float32]
 
 
@@ -75,6 +77,9 @@ def mark_zones(landmarks: NDArray[np.float32], shape: tuple[int, ...]) -> FaceZo
     jaw = landmarks[list(_JAW)]
     neck = _fill([np.concatenate([jaw, jaw[::-1] + _NECK * down])], shape)
     face = mark(_OVAL)
+    x, y = landmarks[_CHIN]
+    rows, columns = np.ogrid[: shape[0], : shape[1]]
+    right = (columns + 0.5 - x) * down[1] - (rows + 0.5 - y) * down[0] < 0
     return FaceZones(
         face,
         mark(*_EYES),
@@ -84,6 +89,7 @@ def mark_zones(landmarks: NDArray[np.float32], shape: tuple[int, ...]) -> FaceZo
         mark(_NOSTRILS),
         neck & ~face,
         mark(_BEARD),
+        right,
         down,
     )
 
