@@ -22,7 +22,7 @@ from benchmarks.report import Results
 from benchmarks.running_statistics import RunningStatistics
 from benchmarks.typology import GROUPS, compute_typology_angle, find_group
 from skinnet.images import find_faces, frame_head, read_photo, resize, segment_skin, srgb_to_linear
-from skinnet.images.faces.finder import choose_largest
+from skinnet.images.faces._largest import choose_largest
 from skinnet.images.srgb import LUMINANCE_WEIGHTS
 from skinnet.network.autoencoder import SkinMaps
 from skinnet.physics import SkinDecoder

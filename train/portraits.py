@@ -29,7 +29,7 @@ from skinnet.images import (
 )
 from skinnet.images._colour_content import find_tone
 from skinnet.images._walk import Found, Walk, walk
-from skinnet.images.faces.finder import choose_largest
+from skinnet.images.faces._largest import choose_largest
 from train.batch import Batch
 from train.guards import list_names
 from train.stream import StreamLoader, count_seen_samples

@@ -13,7 +13,8 @@ from numpy.typing import NDArray
 
 from skinnet.errors import InputError
 from skinnet.images.box import Box
-from skinnet.images.faces.finder import choose_largest, find_faces
+from skinnet.images.faces._largest import choose_largest
+from skinnet.images.faces.finder import find_faces
 from skinnet.images.faces.framing import frame_head
 from skinnet.images.skin_segmentation import SKIN_AREAS
 from skinnet.images.srgb import srgb_to_linear

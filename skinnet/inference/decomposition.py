@@ -58,7 +58,7 @@ class Decomposition:
         >>> from skimage.data import astronaut
         >>> from skinnet import Decomposer
         >>> Decomposer(threads=1)(astronaut(), detail=False)
-        <Decomposition 512 x 512: melanin 0.0302, hemoglobin 0.029 on skin, 17% of the box>
+        <Decomposition 512 x 512: melanin 0.0287, hemoglobin 0.0291 on skin, 16% of the box>
     """
 
     melanin: NDArray[np.float32]

@@ -6,7 +6,8 @@ import numpy as np
 from jaxtyping import Float, UInt8
 
 from skinnet.errors import NoFaceError
-from skinnet.images.faces.finder import choose_largest, find_faces
+from skinnet.images.faces._largest import choose_largest
+from skinnet.images.faces.finder import find_faces
 from skinnet.mesh.mesh import Mesh
 from skinnet.render.scene import Scene
 from skinnet.render.views import OrthographicView

@@ -1,7 +1,7 @@
 """Finds all faces of a photograph."""
 
 import math
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterator
 
 import numpy as np
 from numpy.typing import NDArray
@@ -79,7 +79,7 @@ def find_faces(photo: NDArray[np.uint8]) -> list[Face]:
         >>> from skimage.data import astronaut
         >>> from skinnet.images import find_faces
         >>> find_faces(astronaut())
-        [<Face Box(left=170, top=59, right=279, bottom=168), tilt 2 degrees, score 1.00>]
+        [<Face Box(left=170, top=59, right=279, bottom=168), tilt 3 degrees, score 1.00>]
     """
     found: list[_Placed] = []
     _search_whole(photo, found)
@@ -87,11 +87,6 @@ def find_faces(photo: NDArray[np.uint8]) -> list[Face]:
     if not found and max(photo.shape[:2]) < _LARGE_PHOTO:
         _search_whole(_smooth(photo), found)
     return sorted((face for _, face in found), key=lambda face: face.box.left + face.box.right)
-
-
-def choose_largest(faces: Iterable[Face]) -> Face | None:
-    """The largest of some faces; None if there is none."""
-    return max(faces, key=lambda face: face.box.width, default=None)
 
 
 def _search_whole(photo: NDArray[np.uint8], found: list[_Placed]) -> None:

@@ -7,7 +7,7 @@ from PIL import Image
 from skimage import data
 
 from skinnet.images import Box, Face, find_faces, read_photo, resize
-from skinnet.images.faces.finder import choose_largest
+from skinnet.images.faces._largest import choose_largest
 
 FACE = Box(170, 59, 279, 168)
 
