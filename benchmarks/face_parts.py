@@ -23,6 +23,7 @@ from numpy.typing import NDArray
 from PIL import Image, ImageDraw
 from scipy.stats import spearmanr
 
+from benchmarks.face_landmarks import EYES
 from benchmarks.portrait_faces import read_template
 from benchmarks.portraits import measure_wall
 from benchmarks.report import Results, main
@@ -33,9 +34,8 @@ from skinnet.inference.decomposition import SKIN_THRESHOLD
 
 FOLDER = Path(__file__).parents[2] / "shared" / "data" / "faces"
 
-EYES = ((18, 19, 20, 21, 22, 30, 29, 28), (23, 24, 25, 26, 27, 33, 32, 31))
 IRISES = (tuple(range(2, 10)), tuple(range(10, 18)))
-"""Points of a template on the contours of eyes and irises."""
+"""Points of a template on the contours of irises."""
 
 PIGMENTS = ("melanin", "hemoglobin")
 CHEEKS = ("left_cheek", "right_cheek")
