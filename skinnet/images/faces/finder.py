@@ -17,9 +17,16 @@ _LEAST_DETECTION, _LEAST_IN_PARTS = 0.4, 0.5
 """Least probability of a face for the detector, and in parts of a photograph, where patterns of
 clothes look like small, unclear faces."""
 
-_WEIGHT, _LEAST_ODDS = 25.0, 26.0
+_WEIGHT, _LEAST_EVIDENCE = 25.0, 25.0
 """Weight of the detector's probability beside the mesh's log odds, and the sum from which on
 something is a face: the two together tell ties and lamps from half-hidden faces."""
+
+_CLEAR = 35.0
+"""Sum from which on the mesh is not read again."""
+
+_MOVE = 60.0
+"""Evidence that is lost if all landmarks move by a side of the face when the mesh is read again in
+its own place; those of faces stay."""
 
 _SURE = 13.8
 """Log odds of a face for the mesh from which on no other orientation is tried: bare faces that are
@@ -148,11 +155,15 @@ def _smooth(photo: NDArray[np.uint8]) -> NDArray[np.uint8]:
 def _confirm(photo: NDArray[np.uint8], detection: Detection) -> _Placed | None:
     """The face of a detection, with its square; None if the two networks together see none."""
     landmarks, odds, probability = _choose_turn(photo, detection)
-    evidence = odds + _WEIGHT * probability - _LEAST_ODDS
-    if evidence < 0:
-        return None
     place = place_face(landmarks)
-    score = 1 / (1 + math.exp(-evidence))
+    evidence = odds + _WEIGHT * probability
+    if evidence < _CLEAR:
+        again, odds_again = _read_square(photo, place)
+        moved = float(np.linalg.norm(again - landmarks, axis=1).mean()) / place.side
+        evidence += (odds_again - odds) / 2 - _MOVE * moved
+    if evidence < _LEAST_EVIDENCE:
+        return None
+    score = 1 / (1 + math.exp(_LEAST_EVIDENCE - evidence))
     return place, Face(to_box(place), math.degrees(place.tilt), score, landmarks)
 
 
@@ -168,8 +179,13 @@ def _choose_turn(photo: NDArray[np.uint8], detection: Detection) -> _Mesh:
 
 
 def _read_mesh(photo: NDArray[np.uint8], detection: Detection) -> _Mesh:
-    square = detection.square._replace(side=_MESH_MARGIN * detection.square.side)
-    return *find_landmarks(photo, square), detection.score
+    return *_read_square(photo, detection.square), detection.score
+
+
+def _read_square(
+    photo: NDArray[np.uint8], square: TurnedSquare
+) -> tuple[NDArray[np.float32], float]:
+    return find_landmarks(photo, square._replace(side=_MESH_MARGIN * square.side))
 
 
 def _turn(photo: NDArray[np.uint8], detection: Detection, turn: float) -> Detection | None:
