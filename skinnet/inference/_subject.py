@@ -1,5 +1,6 @@
 """What is read in a photograph: some of its faces, or bare skin."""
 
+import math
 from collections.abc import Sequence
 from typing import Literal, NamedTuple
 
@@ -26,6 +27,9 @@ _BARE_SKIN = (
     "of a bare patch of skin can be a third more or less than that of the same skin in its face. "
     "What has the colours of skin, such as wood or a beige wall, is taken for skin."
 )
+
+_FACE, _NECK = 0.65, 1.2
+"""Radius of a face, and distance from its middle to the end of the neck, in sides of its box."""
 
 
 class Subject(NamedTuple):
@@ -140,9 +144,19 @@ def _note_refused(refused: Sequence[InputError], count: int) -> tuple[str, ...]:
 
 
 def _measure_distance(face: Face, box: Box, shape: tuple[int, ...]) -> NDArray[np.float64]:
-    """Distances [h, w] of a grid's pixels over a box from a face, in sides of the face."""
+    """Distances [h, w] of a grid's pixels over a box from a person, in sides of the face.
+
+    They are those from the line between the middle of the face and the neck. Within a face, no
+    other person's neck is nearer.
+    """
     x = box.left + (np.arange(shape[1]) + 0.5) * box.width / shape[1]
     y = box.top + (np.arange(shape[0]) + 0.5) * box.height / shape[0]
-    middle = face.box.left + face.box.right, face.box.top + face.box.bottom
-    distance: NDArray[np.float64] = np.hypot(x - middle[0] / 2, y[:, None] - middle[1] / 2)
-    return distance / face.box.width
+    tilt, side = math.radians(face.tilt), face.box.width
+    right = (x - (face.box.left + face.box.right) / 2) / side
+    below = (y[:, None] - (face.box.top + face.box.bottom) / 2) / side
+    across = right * math.cos(tilt) + below * math.sin(tilt)
+    along = below * math.cos(tilt) - right * math.sin(tilt)
+    within = np.hypot(across, along)
+    to_line = np.hypot(across, along - along.clip(0, _NECK))
+    distance: NDArray[np.float64] = np.where(within < _FACE, within - 1, to_line)
+    return distance
