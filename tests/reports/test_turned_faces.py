@@ -1,0 +1,89 @@
+"""A turned photograph is read as the upright one, and its maps lie where its pixels do."""
+
+import math
+from pathlib import Path
+
+import numpy as np
+import pytest
+from PIL import Image
+from skimage.data import astronaut
+
+from skinnet import Decomposer, Decomposition
+from skinnet.images import read_photo, resize
+
+FACES = Path("../shared/data/faces")
+TURNS = (15, 30, 45, 90, 180)
+
+
+@pytest.fixture(scope="module")
+def decomposer() -> Decomposer:
+    return Decomposer(threads=1)
+
+
+def turn(photo: np.ndarray, degrees: int) -> np.ndarray:
+    """Turn a photograph clockwise; it goes on as its mirror image, and becomes larger."""
+    angle, (height, width) = math.radians(degrees), photo.shape[:2]
+    cos, sin = abs(math.cos(angle)), abs(math.sin(angle))
+    size = width * cos + height * sin, height * cos + width * sin
+    margin = max(width, height) // 2
+    around = np.pad(photo, ((margin, margin), (margin, margin), (0, 0)), "symmetric")
+    image = Image.fromarray(around).rotate(-degrees, Image.Resampling.BICUBIC)
+    x, y = ((whole - part) / 2 for whole, part in zip(image.size, size, strict=True))
+    return np.array(image.crop((round(x), round(y), round(x + size[0]), round(y + size[1]))))
+
+
+def turn_back(values: np.ndarray, degrees: int, shape: tuple[int, ...]) -> np.ndarray:
+    image = Image.fromarray(values).rotate(degrees, Image.Resampling.BILINEAR, expand=True)
+    x, y = (round((image.size[k] - shape[1 - k]) / 2) for k in (0, 1))
+    return np.array(image.crop((x, y, x + shape[1], y + shape[0])))
+
+
+def compare(one: Decomposition, other: Decomposition) -> tuple[float, float]:
+    """How much more melanin and hemoglobin the other has, as shares."""
+    means = [
+        [getattr(each, name)[each.mask > 0.5].mean() for name in ("melanin", "hemoglobin")]
+        for each in (one, other)
+    ]
+    return means[1][0] / means[0][0] - 1, means[1][1] / means[0][1] - 1
+
+
+@pytest.mark.parametrize("degrees", TURNS)
+def test_the_astronaut_is_read_at_every_tilt(decomposer: Decomposer, degrees: int) -> None:
+    photo = np.ascontiguousarray(astronaut()[:256, 96:352])
+    upright, turned = (decomposer(each, detail=False) for each in (photo, turn(photo, degrees)))
+    assert np.abs(compare(upright, turned)).max() < 0.08
+    mask, melanin = (
+        turn_back(getattr(turned, name), degrees, photo.shape) for name in ("mask", "melanin")
+    )
+    both = (mask > 0.5) & (upright.mask > 0.5)
+    assert both.sum() > 0.88 * ((mask > 0.5) | (upright.mask > 0.5)).sum()
+    assert np.corrcoef(melanin[both], upright.melanin[both])[0, 1] > 0.93
+
+
+@pytest.mark.parametrize("degrees", [30, 90])
+def test_the_astronaut_is_edited_at_every_tilt(decomposer: Decomposer, degrees: int) -> None:
+    photo = np.ascontiguousarray(astronaut()[:256, 96:352])
+    turned = turn(photo, degrees)
+    changes = [
+        decomposer.edit(each, melanin=2.5).astype(np.float32).mean(-1)
+        - each.astype(np.float32).mean(-1)
+        for each in (photo, turned)
+    ]
+    back = turn_back(changes[1], degrees, photo.shape)
+    assert np.corrcoef(back.ravel(), changes[0].ravel())[0, 1] > 0.93
+    assert back.min() < -40
+
+
+@pytest.mark.slow
+@pytest.mark.skipif(not FACES.is_dir(), reason="needs ../shared/data/faces")
+@pytest.mark.parametrize("degrees", TURNS)
+def test_portraits_are_read_at_every_tilt(decomposer: Decomposer, degrees: int) -> None:
+    paths = sorted(FACES.glob("london/*.jpg"))[::16] + sorted(FACES.glob("congress/*.jpg"))[::150]
+    differences = []
+    for path in paths:
+        photo = read_photo(path)
+        if max(photo.shape) > 700:
+            photo = resize(photo, 675, 675)
+        upright, turned = (decomposer(each, detail=False) for each in (photo, turn(photo, degrees)))
+        differences.append(np.abs(compare(upright, turned)))
+    assert np.median(differences, 0).max() < 0.05
