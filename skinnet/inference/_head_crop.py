@@ -24,7 +24,8 @@ _UPRIGHT = 8.0
 """Largest tilt, in degrees, of heads that are read as they are; the network learnt from such."""
 
 _MARGIN = 2.0
-"""Side of the square around the head in sides of the face's box."""
+"""Side of the square around the head in sides of the face's box, and of the one around a whole
+photograph in its longer sides."""
 
 _MIN_SIDE = 16
 """Smallest side, in pixels, of the encoder's input."""
@@ -115,6 +116,17 @@ def crop_head(face: Face, photo: tuple[int, ...]) -> HeadCrop:
         return HeadCrop(frame_head(face.box, width, height, _MARGIN))
     square = _turn_square(face)
     return HeadCrop(_bound(square, width, height), square)
+
+
+def crop_patch(photo: tuple[int, ...]) -> HeadCrop:
+    """A whole photograph of a shape [H, W, ...] that shows skin without a face.
+
+    The encoder sees it amid its mirror images: it learnt that skin is in the middle of a picture,
+    and background at the sides.
+    """
+    height, width = photo[:2]
+    square = TurnedSquare(width / 2, height / 2, _MARGIN * max(width, height))
+    return HeadCrop(Box(0, 0, width, height), square)
 
 
 def place_face(size: int) -> Box:

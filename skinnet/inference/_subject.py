@@ -13,10 +13,9 @@ from skinnet.images._colour_content import check_colour, refuse_grey
 from skinnet.images.box import Box
 from skinnet.images.faces.face import Face
 from skinnet.images.faces.finder import find_faces
-from skinnet.images.resizing import resize
 from skinnet.inference._face_checks import check_face
 from skinnet.inference._face_choice import FaceChoice, check_choice, choose_faces, note_others
-from skinnet.inference._head_crop import Arrays, HeadCrop, crop_head
+from skinnet.inference._head_crop import Arrays, HeadCrop, crop_head, crop_patch
 from skinnet.inference.decomposition import SKIN_THRESHOLD
 
 Region = Literal["face", "skin"]
@@ -24,7 +23,8 @@ Region = Literal["face", "skin"]
 
 _BARE_SKIN = (
     "The whole image was read, without a search for a face. The network learnt from faces: melanin "
-    "of a bare patch of skin can be a third more or less than that of the same skin in its face. "
+    "of a bare patch of skin can be a third more or less than that of the same skin in its face, "
+    "and dark skin less than half. "
     "What has the colours of skin, such as wood or a beige wall, is taken for skin."
 )
 
@@ -52,15 +52,8 @@ class Subject(NamedTuple):
     notes: tuple[str, ...] = ()
 
     def keep_own_skin(self, outputs: Arrays) -> dict[str, NDArray[np.float32]]:
-        """Set the mask to 0 where another face is nearer, measured in sides of each face.
-
-        Without a face, the mask is that of the colours: the network's is the same share of a cheek
-        as of a wall.
-        """
+        """Set the mask to 0 where another face is nearer, measured in sides of each face."""
         mask = outputs["mask"]
-        if self.skin is not None:
-            height, width = mask.shape[1:]
-            return dict(outputs) | {"mask": resize(self.skin, width, height)[None]}
         others = [face for face in self.faces or () if face is not self.face]
         if self.face is None or not others:
             return dict(outputs)
@@ -106,7 +99,7 @@ def _find_bare_skin(photo: NDArray[np.uint8], name: str) -> Subject:
             f"No skin was found in {name}: too little of it has the colours of skin under usual "
             "light. Give a picture that skin fills, in daylight."
         )
-    return Subject(HeadCrop(box), skin=skin, notes=(_BARE_SKIN,))
+    return Subject(crop_patch(photo.shape), skin=skin, notes=(_BARE_SKIN,))
 
 
 def _find_face_subjects(photo: NDArray[np.uint8], name: str, faces: FaceChoice) -> list[Subject]:

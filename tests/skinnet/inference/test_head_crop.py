@@ -5,7 +5,7 @@ import pytest
 from PIL import Image, ImageDraw
 
 from skinnet.images import Box, Face, frame_head
-from skinnet.inference._head_crop import HeadCrop, crop_head, place_face
+from skinnet.inference._head_crop import HeadCrop, crop_head, crop_patch, place_face
 from skinnet.inference.onnx_model import MAP_NAMES
 
 SIZE = 160
@@ -97,3 +97,16 @@ def test_the_face_is_where_the_cut_has_it() -> None:
     assert crop.square is not None
     middle = crop.square.place(np.array([[100.0, 105.0]]), 200)[0]
     assert math.dist(middle, (200, 200)) < 1
+
+
+def test_a_patch_is_seen_amid_its_mirror_images() -> None:
+    photo = make_photo()[:200]
+    crop = crop_patch(photo.shape)
+    assert crop.box == Box(0, 0, 400, 200)
+    cut = crop.cut(photo, SIZE)
+    middle = np.array(Image.fromarray(photo).resize((80, 40)))
+    assert np.abs(cut[60:100, 40:120].astype(int) - middle).max() < 12
+    assert np.abs(cut[60:100, 30:40].astype(int) - cut[60:100, 49:39:-1]).max() < 12
+    turned = crop.turn_back(run_encoder(cut), SIZE)
+    assert turned["offset"].shape == (1, 40, 80, 3) and (turned["mask"] > 0).any()
+    assert (crop.fade((40, 80), photo.shape) == 1).all()
