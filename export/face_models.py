@@ -23,8 +23,9 @@ from onnx import TensorProto, helper, numpy_helper
 FOLDER = Path(__file__).parents[1] / "skinnet/images/faces/models"
 LEAST_WEIGHTS = 17
 """Numbers in a tensor that is stored in half precision."""
-GRID_SHAPE = (1, 16, 16, 2)
-"""Shape of the constant columns and rows at which features around an eye or the lips are read."""
+GRID_SHAPE, FEATURES_SIDE = (1, 16, 16, 2), 48
+"""Shape of the constant columns and rows at which features around an eye or the lips are read, and
+number of columns and rows of the features."""
 
 
 def store_half(model: onnx.ModelProto) -> None:
@@ -43,51 +44,66 @@ def store_half(model: onnx.ModelProto) -> None:
     _prepend(graph, casts)
 
 
-def clip_indices(model: onnx.ModelProto) -> None:
-    """Move the indices of every GatherND inside the tensor [batch, rows, columns, channels]."""
-    graph = model.graph
-    shapes = {one.name: one for one in onnx.shape_inference.infer_shapes(model).graph.value_info}
-    nodes = []
-    for number, node in enumerate(graph.node):
-        if node.op_type == "GatherND":
-            sides = [side.dim_value for side in shapes[node.input[0]].type.tensor_type.shape.dim]
-            limits = np.zeros(3, np.int64), np.array(sides[:3], np.int64) - 1
-            names = [f"{end}_index_{number}" for end in ("least", "largest")]
-            values = zip(limits, names, strict=True)
-            graph.initializer.extend(numpy_helper.from_array(*value) for value in values)
-            inside = [f"{node.input[1]}_{end}" for end in ("raised", "clipped")]
-            nodes.append(helper.make_node("Max", [node.input[1], names[0]], [inside[0]]))
-            nodes.append(helper.make_node("Min", [inside[0], names[1]], [inside[1]]))
-            node.input[1] = inside[1]
-        nodes.append(node)
-    del graph.node[:]
-    graph.node.extend(nodes)
-
-
-def centre_samples(model: onnx.ModelProto) -> None:
+def sample_features(model: onnx.ModelProto) -> None:
     """Read features at the centres of pixels, where MediaPipe's TransformTensorBilinear does.
 
-    With a grid p, a matrix A and a shift b, the converted file reads at A p + b; right is
-    A (p + 1/2) + b - 1/2.
+    With a grid p, a matrix A and a shift b, the converted file reads at A p + b, in many small
+    steps. Right is A (p + 1/2) + b - 1/2, which is one GridSample at A (p + 1/2) + b over half the
+    side, less 1.
     """
     graph = model.graph
-    grids = {one.name: one for one in graph.initializer if tuple(one.dims) == GRID_SHAPE}
-    for tensor in grids.values():
+    for tensor in (one for one in graph.initializer if tuple(one.dims) == GRID_SHAPE):
         tensor.CopyFrom(numpy_helper.from_array(numpy_helper.to_array(tensor) + 0.5, tensor.name))
-    scaled = {
-        node.output[0] for node in graph.node if node.op_type == "MatMul" and node.input[0] in grids
-    }
-    half = numpy_helper.from_array(np.array(0.5, np.float32), "half_pixel")
-    graph.initializer.append(half)
-    nodes = []
+    for name, value in (("half_side", FEATURES_SIDE / 2), ("one", 1)):
+        graph.initializer.append(numpy_helper.from_array(np.array(value, np.float32), name))
+    features = _find_features(graph)
+    for floor in [node for node in graph.node if node.op_type == "Floor"]:
+        (place,), (read,) = floor.input, _find_sum(graph, floor.output[0]).output
+        steps = [f"{place}_{step}" for step in ("scaled", "grid", "features")]
+        nodes = [
+            helper.make_node("Div", [place, "half_side"], steps[:1]),
+            helper.make_node("Sub", [steps[0], "one"], steps[1:2]),
+            helper.make_node("GridSample", [features, steps[1]], steps[2:], padding_mode="border"),
+            helper.make_node("Transpose", steps[2:], [read], perm=[0, 2, 3, 1]),
+        ]
+        number = next(at for at, node in enumerate(graph.node) if read in node.output)
+        graph.node.remove(graph.node[number])
+        for node in reversed(nodes):
+            graph.node.insert(number, node)
+    _remove_unused(graph)
+
+
+def _find_features(graph: onnx.GraphProto) -> str:
+    """The features [1, channels, rows, columns] that are read."""
+    read = next(node.input[0] for node in graph.node if node.op_type == "GatherND")
+    features: str = next(node.input[0] for node in graph.node if read in node.output)
+    return features
+
+
+def _find_sum(graph: onnx.GraphProto, name: str) -> onnx.NodeProto:
+    """The sum of four neighbours that first follows from a tensor."""
+    known = {name}
+    node: onnx.NodeProto
     for node in graph.node:
-        if node.op_type == "Add" and node.input[0] in scaled:
-            shift = f"{node.input[1]}_centred"
-            nodes.append(helper.make_node("Sub", [node.input[1], half.name], [shift]))
-            node.input[1] = shift
-        nodes.append(node)
-    del graph.node[:]
-    graph.node.extend(nodes)
+        if known.intersection(node.input):
+            known.update(node.output)
+            if node.op_type == "Sum" and len(node.input) == 4:
+                return node
+    raise ValueError(f"No sum of four neighbours follows from {name}.")
+
+
+def _remove_unused(graph: onnx.GraphProto) -> None:
+    """Remove nodes and weights on which no output depends."""
+    used = {output.name for output in graph.output}
+    kept = []
+    for node in reversed(graph.node):
+        if used.intersection(node.output):
+            used.update(node.input)
+            kept.append(node)
+    tensors = [tensor for tensor in graph.initializer if tensor.name in used]
+    del graph.node[:], graph.initializer[:]
+    graph.node.extend(reversed(kept))
+    graph.initializer.extend(tensors)
 
 
 def expand_prelu(model: onnx.ModelProto) -> None:
@@ -123,8 +139,7 @@ def main(arguments: list[str] | None = None) -> int:
     parser.add_argument("-o", "--output", type=Path, default=FOLDER)
     options = parser.parse_args(arguments)
     detector, mesh = (onnx.load(path) for path in (options.detector, options.mesh))
-    centre_samples(mesh)
-    clip_indices(mesh)
+    sample_features(mesh)
     expand_prelu(mesh)
     for name, model in (("face_detector", detector), ("face_mesh", mesh)):
         store_half(model)

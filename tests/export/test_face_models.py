@@ -4,8 +4,9 @@ import numpy as np
 import onnx
 import onnxruntime
 from onnx import TensorProto, helper, numpy_helper
+from scipy.ndimage import map_coordinates
 
-from export.face_models import GRID_SHAPE, centre_samples, expand_prelu, store_half
+from export.face_models import expand_prelu, sample_features, store_half
 
 
 def make_model(
@@ -45,18 +46,32 @@ def test_prelu_stays_the_same() -> None:
     assert np.array_equal(run(model, x=x), before)
 
 
-def test_samples_are_at_the_centres_of_pixels() -> None:
+def test_features_are_read_at_the_centres_of_pixels() -> None:
+    rng = np.random.default_rng(0)
     grid = np.stack(np.meshgrid(np.arange(16), np.arange(16)), -1).astype(np.float32)[None]
     model = make_model(
         [
+            helper.make_node("Transpose", ["x"], ["last"], perm=[0, 2, 3, 1]),
             helper.make_node("MatMul", ["grid", "matrix"], ["scaled"]),
-            helper.make_node("Add", ["scaled", "shift"], ["y"]),
+            helper.make_node("Add", ["scaled", "shift"], ["place"]),
+            helper.make_node("Floor", ["place"], ["corner"]),
+            helper.make_node("Cast", ["corner"], ["whole"], to=TensorProto.INT64),
+            helper.make_node("Concat", ["first", "whole"], ["index"], axis=3),
+            helper.make_node("GatherND", ["last", "index"], ["read"]),
+            helper.make_node("Sum", ["read"] * 4, ["y"]),
         ],
-        {"grid": grid},
-        {"matrix": [1, 2, 2], "shift": [1, 1, 1, 2], "y": list(GRID_SHAPE)},
+        {"grid": grid, "first": np.zeros((1, 16, 16, 1), np.int64)},
+        {"x": [1, 3, 48, 48], "matrix": [1, 2, 2], "shift": [1, 1, 1, 2], "y": [1, 16, 16, 3]},
     )
-    matrix = np.array([[[0.5, 0.1], [-0.1, 0.25]]], np.float32)
-    shift = np.array([7, 9], np.float32).reshape(1, 1, 1, 2)
-    centre_samples(model)
-    expected = (grid + 0.5) @ matrix + shift - 0.5
-    assert np.allclose(run(model, matrix=matrix, shift=shift), expected)
+    x = rng.normal(size=(1, 3, 48, 48)).astype(np.float32)
+    matrix = np.array([[[2.5, 0.1], [-0.1, 0.25]]], np.float32)
+    shift = np.array([17, -1], np.float32).reshape(1, 1, 1, 2)
+    sample_features(model)
+    assert "GatherND" not in {node.op_type for node in model.graph.node}
+    places = ((grid + 0.5) @ matrix + shift - 0.5)[0]
+    expected = [
+        map_coordinates(one, [places[..., 1], places[..., 0]], order=1, mode="nearest")
+        for one in x[0]
+    ]
+    found = run(model, x=x, matrix=matrix, shift=shift)
+    assert np.allclose(found[0], np.stack(expected, -1), atol=1e-4)
