@@ -6,6 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy import ndimage
 
+from skinnet.images._face_cover import find_cover
 from skinnet.images._guided_filter import enlarge_guided, filter_guided, make_guide
 from skinnet.images._skin_colours import (
     compute_features,
@@ -64,7 +65,8 @@ def segment_face_skin(photo: NDArray[np.uint8], landmarks: _Image, prior: _Image
     The coarse mask and the face's parts give odds of skin at each place. The colours of this
     person's skin, and those of what is certainly no skin in this picture, give odds for each
     colour. Highlights, moles and the shadow below the chin are filled. The edge follows the
-    photograph. Eyes, brows, nostrils, the open mouth, dense beards and painted lips are left out.
+    photograph. Eyes, brows, nostrils, the open mouth, dense beards, plain face masks and painted
+    lips are left out.
 
     Args:
         photo: uint8 sRGB [H, W, 3] with the whole head.
@@ -90,23 +92,25 @@ def _segment(photo: NDArray[np.uint8], points: _Image, prior: _Image, side: floa
     linear = srgb_to_linear(photo) + np.float32(1e-3)
     linear = ndimage.gaussian_filter(linear, (0.7, 0.7, 0))
     features = compute_features(linear)
-    seeds = _choose_seeds(zones, prior, side)
+    cover = find_cover(features[..., 2], zones, side)
+    seeds = _choose_seeds(zones, prior * ~cover, side)
     if not seeds.any():
         return prior
     mean, covariance = fit_normal(features[seeds])
     distance = measure_distance(linear, mean, covariance + _SHADING)
     known = (prior < 0.1) & ~grow(zones.face | zones.neck, 0.05 * side)
+    known |= grow(cover, -0.05 * side)
     evidence = compute_log_density(distance, covariance + _SHADING)
     evidence = evidence - estimate_log_density(features, known)
-    beard = _find_beard(features[..., 2], zones, seeds, side)
-    score = _judge_place(zones, prior, side) - 12 * _soften(beard, 0.01 * side)
+    hidden = cover | _find_beard(features[..., 2], zones, seeds, side)
+    score = _judge_place(zones, prior, side) - 12 * _soften(hidden, 0.01 * side)
     score -= _judge_hair(_compare_nearby(features[..., 2], seeds, side), zones, side)
     score += _limit(evidence, features - mean, score, zones)
     score[zones.eyes | zones.mouth] = -8
     probability = (1 / (1 + np.exp(-score))).astype(np.float32)
     probability = filter_guided(make_guide(photo), probability, 2, 1e-3).clip(0, 1)
     own = _find_own(probability > 0.5, zones, prior, side)
-    filled = fill_gaps(own, zones, features - mean, beard, side)
+    filled = fill_gaps(own, zones, features - mean, hidden, side)
     # Filled gaps overlap the skin around them, so that no seam is left.
     inside = _soften((own | filled) & grow(filled, 2.0), 0.7)
     whole = np.maximum(probability * grow(own, 2.0), inside).clip(0, 1)

@@ -40,7 +40,7 @@ def fill_gaps(
         skin: What was found to be skin, [h, w].
         zones: The parts of the face.
         difference: Log R/G, log B/G and log luminance less those of the person's skin, [h, w, 3].
-        beard: Where skin is hidden by a beard.
+        beard: Where skin is hidden by a beard or by cloth.
         side: Side of the face's box in pixels.
     """
     hidden = zones.eyes | zones.mouth

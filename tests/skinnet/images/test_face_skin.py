@@ -64,3 +64,13 @@ def test_a_dense_beard_is_no_skin(shared_data: Path) -> None:
     face, mask = segment(photo)
     x, y = face.landmarks[[152, 200]].mean(0).round().astype(int)
     assert mask[y - 20 : y + 20, x - 40 : x + 40].mean() < 0.1
+
+
+def test_cloth_of_the_colour_of_skin_is_no_skin(shared_data: Path) -> None:
+    photo = read_photo(shared_data / "faces" / "london" / "001_03.jpg").copy()
+    face = find_faces(photo)[0]
+    zones = mark_zones(face.landmarks, photo.shape)
+    photo[zones.cloth] = np.median(photo[zones.face], 0) + np.array([12, 4, -6])
+    _, mask = segment(photo)
+    assert mask[zones.cloth].mean() < 0.1
+    assert mask[grow(zones.face & ~zones.cloth & ~zones.eyes & ~zones.brows, -8.0)].mean() > 0.9
