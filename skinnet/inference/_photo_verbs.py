@@ -15,6 +15,7 @@ from skinnet.images._mark import EDITED, Mark, read_mark
 from skinnet.images._result_names import OUTPUT, compute_digest, lock_folder
 from skinnet.images._walk import STDIN, Found, Walk, check_mark, find_one, walk
 from skinnet.images._write import choose_suffix, find_format, write_picture
+from skinnet.images.faces._face_models import open_ahead
 from skinnet.images.photograph import read_picture
 from skinnet.images.picture import Picture
 from skinnet.inference._face_choice import check_choice
@@ -42,6 +43,8 @@ _READ, _FACELESS, _WRITTEN_NOT, _READ_NOT = (
 def predict(options: argparse.Namespace) -> bool:
     """Decompose every input; report bad inputs and continue. Returns whether none was bad."""
     check_choice(options.faces)
+    if options.region == "face":
+        open_ahead()
     decomposer = Decomposer(options.model)
     decomposer.load()
     found = walk(options.input, options.recursive)
@@ -145,6 +148,8 @@ def edit(options: argparse.Namespace) -> None:
     check_choice(options.faces)
     if options.output is not None:
         find_format(options.output)
+    if options.region == "face":
+        open_ahead()
     decomposer = Decomposer(options.model)
     source, picture, notes = _read(find_one(options.input))
     suffix, changes = choose_suffix(picture, "" if source.path is None else source.path.suffix)

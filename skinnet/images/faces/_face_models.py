@@ -2,15 +2,31 @@
 
 from functools import cache
 from importlib.resources import as_file, files
+from threading import Lock, Thread
 
 import numpy as np
 import onnxruntime
 from numpy.typing import NDArray
 
+_OPENING = Lock()
+
+
+def open_ahead() -> None:
+    """Begin to open the networks, so that they open while a photograph is read."""
+    # Not a daemon: a process that ends must not leave onnxruntime half-way through a file.
+    Thread(
+        target=lambda: [open_face_model(name) for name in ("face_detector", "face_mesh")]
+    ).start()
+
+
+def open_face_model(name: str) -> onnxruntime.InferenceSession:
+    """Open `face_detector` or `face_mesh`, once."""
+    with _OPENING:
+        return _open(name)
+
 
 @cache
-def open_face_model(name: str) -> onnxruntime.InferenceSession:
-    """Open `face_detector` or `face_mesh`."""
+def _open(name: str) -> onnxruntime.InferenceSession:
     options = onnxruntime.SessionOptions()
     options.log_severity_level = 4
     # The networks are small: more threads win nothing, and wait busily.
