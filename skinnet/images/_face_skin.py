@@ -46,11 +46,12 @@ _LIPS_WIDTH = np.array([0.1, 0.1, 0.3])
 _BEARD_DARKNESS, _BEARD_ROUGHNESS = 0.4, 1.4
 """Least darkness (difference in log luminance) of a dense beard, and its least roughness relative
 to the upper face. Of 63 people those with full beards have a roughness of 1.75 or more in the
-median of the lower face, all others 1.25 or less."""
+median of the lower face, all others 1.25 or less. With the conditions below, 5 of 672 small
+portraits without a beard there are taken for bearded."""
 
 _LEAST_BEARD = 0.02
-"""Least area of a beard inside the face, in areas of the face's box, a third of it on both sides:
-the shadow of a nose or a smile is on one."""
+"""Least area of a beard inside the face, in areas of the face's box, a third of it on both sides,
+and it covers half of the chin: the shadows of a nose and the folds of a smile do not."""
 
 _EDGE_RADIUS, _EDGE_VARIANCE = 0.016, 3e-4
 """Radius and variance of the guided filter that finds the edge at full resolution."""
@@ -178,7 +179,8 @@ def _find_beard(log: NDArray[Any], zones: FaceZones, seeds: _Mask, side: float) 
     inside = area & grow(zones.face, -0.06 * side)
     right = np.count_nonzero(inside & zones.right)
     both_sides = min(right, np.count_nonzero(inside) - right)
-    if both_sides < _LEAST_BEARD * side**2 / 3:
+    is_on_chin = np.count_nonzero(area & zones.chin) > 0.5 * np.count_nonzero(zones.chin)
+    if not is_on_chin or both_sides < _LEAST_BEARD * side**2 / 3:
         return np.zeros(log.shape, np.bool_)
     return grow(area, 0.01 * side)
 

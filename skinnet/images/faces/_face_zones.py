@@ -29,6 +29,7 @@ _NOSTRILS = (98, 240, 64, 48, 115, 220, 45, 4, 275, 440, 344, 278, 294, 460, 327
 _JAW = (132, 58, 172, 136, 150, 149, 176, 148, 152, 377, 400, 378, 379, 365, 397, 288, 361)
 _BEARD = (234, *_JAW, 454, 425, 327, 2, 98, 205)
 
+_CHIN_PAD = (200, 201, 208, 171, 152, 396, 428, 421)
 _CLOTH = (6, 117, 123, *_JAW, 352, 346)
 """Outline of a face mask, from the bridge of the nose to the jaw."""
 
@@ -49,6 +50,7 @@ class FaceZones(NamedTuple):
         nostrils: The lower half of the nose.
         neck: Below the jaw.
         beard: Where beards grow: cheeks, chin, and around the mouth.
+        chin: The middle of the chin.
         cloth: What a face mask covers that is worn on the nose.
         right: The half of the picture on the person's right.
         down: Columns and rows from the brows to the chin, float [2].
@@ -62,6 +64,7 @@ class FaceZones(NamedTuple):
     nostrils: NDArray[np.bool_]
     neck: NDArray[np.bool_]
     beard: NDArray[np.bool_]
+    chin: NDArray[np.bool_]
     cloth: NDArray[np.bool_]
     right: NDArray[np.bool_]
     down: NDArray[np.float32]
@@ -94,6 +97,7 @@ def mark_zones(landmarks: NDArray[np.float32], shape: tuple[int, ...]) -> FaceZo
         mark(_NOSTRILS),
         neck & ~face,
         mark(_BEARD),
+        mark(_CHIN_PAD),
         mark(_CLOTH),
         right,
         down,
