@@ -16,7 +16,7 @@ from skinnet.inference._head_crop import HeadCrop, place_face
 _LEAST_WIDTH = 24
 """Smallest width of a face, in pixels."""
 
-_LEAST_INSIDE, _MOST_INSIDE = 0.5, 0.65
+_LEAST_INSIDE, _MOST_INSIDE = 0.5, 0.9
 """Share of a face inside the photograph below which it is refused, and below which that is said."""
 
 _COLOUR_SIZE, _FLAT_SIZE, _STEPS = 512, 96, 32

@@ -10,6 +10,7 @@ from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
+from PIL import Image, ImageDraw
 from scipy import ndimage
 
 from skinnet.images.box import Box
@@ -22,6 +23,9 @@ from skinnet.inference.onnx_model import MAP_NAMES
 
 _UPRIGHT = 8.0
 """Largest tilt, in degrees, of heads that are read as they are; the network learnt from such."""
+
+_OUTSIDE = 0.02
+"""Largest part of a face's side outside the photograph for its head to be read as it is."""
 
 _MARGIN = 2.0
 """Side of the square around the head in sides of the face's box, and of the one around a whole
@@ -65,6 +69,16 @@ class HeadCrop(NamedTuple):
         inside = np.pad(np.ones((size, size), np.float32), 1)
         turned["mask"] *= self._turn_map(inside, size, margin=1)
         return dict(outputs) | {name: values[None] for name, values in turned.items()}
+
+    def find_inside(self) -> NDArray[np.bool_]:
+        """Which pixels [H, W] of the rectangle are inside the square."""
+        if self.square is None:
+            return np.ones((self.box.height, self.box.width), np.bool_)
+        corners = self.square.place(np.array([[0.0, 0], [1, 0], [1, 1], [0, 1]]), 1)
+        picture = Image.new("1", (self.box.width, self.box.height))
+        corners -= (self.box.left + 0.5, self.box.top + 0.5)
+        ImageDraw.Draw(picture).polygon(list(map(tuple, corners)), fill=1)
+        return np.array(picture)
 
     def fade(self, shape: tuple[int, ...], photo: tuple[int, ...]) -> NDArray[np.float32]:
         """Weights [h, w] of the rectangle that fall to 0 at sides inside the photograph.
@@ -110,12 +124,21 @@ class HeadCrop(NamedTuple):
 
 
 def crop_head(face: Face, photo: tuple[int, ...]) -> HeadCrop:
-    """The square around a head in a photograph of a shape [H, W, ...]."""
+    """The square around a head in a photograph of a shape [H, W, ...].
+
+    A rectangle without a part of the face is not like what the network learnt from; a square that
+    is continued outside the photograph is.
+    """
     height, width = photo[:2]
-    if abs(face.tilt) <= _UPRIGHT:
+    if abs(face.tilt) <= _UPRIGHT and _is_inside(face.box, width, height):
         return HeadCrop(frame_head(face.box, width, height, _MARGIN))
     square = _turn_square(face)
     return HeadCrop(_bound(square, width, height), square)
+
+
+def _is_inside(face: Box, width: int, height: int) -> bool:
+    least = -_OUTSIDE * face.width
+    return min(face.left, face.top, width - face.right, height - face.bottom) >= least
 
 
 def crop_patch(photo: tuple[int, ...]) -> HeadCrop:

@@ -259,6 +259,8 @@ class Decomposer:
         photo, box = picture.srgb, subject.crop.box
         encoder_outputs, skin = self._read(photo, subject)
         layers = self._make_layers(photo[box.slices], encoder_outputs, skin, detail)
+        inside = subject.crop.find_inside()
+        _clear_outside(layers, inside, photo[box.slices])
         alpha = None if picture.alpha is None else picture.alpha[box.slices]
         notes = note_transparency(alpha, layers.mask, name)
         return Decomposition(
@@ -266,6 +268,8 @@ class Decomposer:
             light=self._name_light(encoder_outputs),
             camera=_name_camera(encoder_outputs),
             box=box,
+            pixels_read=int(np.count_nonzero(inside)),
+            tilt=None if subject.face is None else subject.face.tilt,
             colour_space=picture.colour_space,
             notes=(*picture.notes, *notes, *subject.notes),
             output_info=self.encoder.output_info,
@@ -390,6 +394,14 @@ def _name_camera(encoder_outputs: _Arrays) -> dict[str, Any]:
         "components": encoder_outputs["camera"][0].tolist(),
         "white_balance": {"r_over_g": r_over_g, "b_over_g": b_over_g},
     }
+
+
+def _clear_outside(layers: Layers, inside: NDArray[np.bool_], crop: NDArray[np.uint8]) -> None:
+    """Set maps to 0 and the reconstruction to the photograph outside of a turned square."""
+    outside = ~inside
+    if outside.any():
+        for name, layer in layers._asdict().items():
+            layer[outside] = crop[outside] if name == "reconstruction" else 0
 
 
 def _paste_layers(layers: Layers, photo: NDArray[np.uint8], box: Box) -> dict[str, NDArray[Any]]:

@@ -27,7 +27,8 @@ class Decomposition:
     """Maps of the skin in one photograph, its light and its camera.
 
     image = shading * skin(melanin, hemoglobin) + specular + offset in linear RGB, under `light` and
-    with `camera`. With detail this holds for every pixel of skin. Outside `box` maps are 0.
+    with `camera`. With detail this holds for every pixel of skin. Maps are 0
+    outside `box`, and outside of the turned square around a tilted head.
 
     Attributes:
         melanin: Volume fraction of melanosomes in the epidermis, float32 [H, W] in [0, 1].
@@ -41,8 +42,10 @@ class Decomposition:
         camera: `components`, the camera's principal components in standard deviations, and
             `white_balance`, its errors as the ratios `r_over_g` and `b_over_g`.
         reconstruction: uint8 sRGB [H, W, 3]; the model's picture of skin with the network's offset,
-            blended with the decoder's picture off skin; the photograph itself outside `box`.
-        box: The part of the photograph that was decomposed.
+            blended with the decoder's picture off skin; the photograph itself where nothing was
+            read.
+        box: The part of the photograph that was read; of a tilted head, the upright rectangle
+            around the turned square that was read.
         output_info: Unit, range and description of each map.
         colour_space: The colour space in which the photograph was, and how that is known.
         notes: Sentences that the user should read, such as what was assumed of the photograph.
@@ -53,12 +56,15 @@ class Decomposition:
         faces_found: Number of faces that were found in the photograph; None if none was looked for.
         face_parts: Where the parts of the face are; None if no face was looked for. It is what
             `landmarks`, `regions`, `sclera` and `teeth` are made of.
+        tilt: Angle in degrees by which the head is turned clockwise; None if no face was looked
+            for.
+        pixels_read: Number of pixels in the box that were read; None for all of them.
 
     Example:
         >>> from skimage.data import astronaut
         >>> from skinnet import Decomposer
         >>> Decomposer(threads=1)(astronaut(), detail=False)
-        <Decomposition 512 x 512: melanin 0.0287, hemoglobin 0.0291 on skin, 16% of the box>
+        <Decomposition 512 x 512: melanin 0.0287, hemoglobin 0.0291 on skin, 16% of the crop>
     """
 
     melanin: NDArray[np.float32]
@@ -78,17 +84,27 @@ class Decomposition:
     face_id: int | None = None
     faces_found: int | None = None
     face_parts: FaceParts | None = None
+    tilt: float | None = None
+    pixels_read: int | None = None
 
     def __repr__(self) -> str:
         height, width = self.mask.shape
         skin = self.mask > SKIN_THRESHOLD
-        share = np.mean(skin[self.box.slices])
         if not skin.any():
             return f"<Decomposition {width} x {height}: no skin>"
-        return (
-            f"<Decomposition {width} x {height}: melanin {self.melanin[skin].mean():.3g}, "
-            f"hemoglobin {self.hemoglobin[skin].mean():.3g} on skin, {share:.0%} of the box>"
+        pigments = (
+            f"{name} {getattr(self, name)[skin].mean():.3g}" for name in ("melanin", "hemoglobin")
         )
+        return (
+            f"<Decomposition {width} x {height}: {', '.join(pigments)} on skin, "
+            f"{self.skin_share:.0%} of the crop>"
+        )
+
+    @property
+    def skin_share(self) -> float:
+        """Share of skin in what was read: in `box`, or in the turned square that it bounds."""
+        area = self.box.width * self.box.height if self.pixels_read is None else self.pixels_read
+        return np.count_nonzero(self.mask > SKIN_THRESHOLD) / max(area, 1)
 
     @property
     def landmarks(self) -> NDArray[np.float32] | None:
@@ -187,8 +203,9 @@ class Decomposition:
 
         Returns:
             `id` (of the face), `faces_found`, `photo` (size), `colour_space` (`name`,
-            `known_from`), `notes`, `box`, `skin_share` (part of the box that is skin), `maps`
-            (`unit`, `mean`, `std`, `p5` and `p95` of each; None where there is no skin),
+            `known_from`), `notes`, `box`, `skin_share` (share of skin in what
+            was read), `tilt` (degrees; None without a face), `maps` (`unit`, `mean`, `std`, `p5`
+            and `p95` of each; None where there is no skin),
             `regions` (of each `melanin` and `hemoglobin` with `mean`, `std` and `median`, which are
             None where it is hidden, `share` and `pixels`), `landmarks` (a list of [x, y] to a
             tenth of a pixel; None without a face), `light`, `camera`, `version` and `model`.
@@ -206,7 +223,8 @@ class Decomposition:
             },
             "notes": list(self.notes),
             "box": self.box._asdict(),
-            "skin_share": _round(float(np.mean(skin[self.box.slices]))),
+            "skin_share": _round(self.skin_share),
+            "tilt": None if self.tilt is None else round(self.tilt, 1),
             "maps": {
                 name: {"unit": self.describe_map(name).unit} | _summarise(value[skin])
                 for name, value in maps.items()

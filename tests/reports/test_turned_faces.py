@@ -87,3 +87,26 @@ def test_portraits_are_read_at_every_tilt(decomposer: Decomposer, degrees: int) 
         upright, turned = (decomposer(each, detail=False) for each in (photo, turn(photo, degrees)))
         differences.append(np.abs(compare(upright, turned)))
     assert np.median(differences, 0).max() < 0.05
+
+
+@pytest.mark.parametrize("left", [190, 205, 220])
+def test_a_face_cut_by_the_edge_is_read_as_the_whole_one(decomposer: Decomposer, left: int) -> None:
+    whole = decomposer(astronaut(), detail=False)
+    part = decomposer(np.ascontiguousarray(astronaut()[:, left:]), detail=False)
+    both = (whole.mask[:, left:] > 0.5) & (part.mask > 0.5)
+    assert np.count_nonzero(both) > 0.9 * np.count_nonzero(whole.mask[:, left:] > 0.5)
+    for name in ("melanin", "hemoglobin"):
+        ratio = getattr(part, name)[both] / getattr(whole, name)[:, left:][both]
+        assert abs(np.median(ratio) - 1) < 0.25 and np.percentile(ratio, 95) < 1.5
+    assert any("inside the picture" in note for note in part.notes)
+
+
+def test_nothing_is_read_outside_the_turned_square(decomposer: Decomposer) -> None:
+    turned = np.array(Image.fromarray(astronaut()).rotate(-45, Image.Resampling.BICUBIC))
+    read = decomposer(turned)
+    corner = read.box.slices[0].start, read.box.slices[1].start
+    assert read.offset[corner].tolist() == [0, 0, 0] and read.shading[corner] == 0
+    assert read.reconstruction[corner].tolist() == turned[corner].tolist()
+    upright = decomposer(astronaut())
+    assert read.skin_share == pytest.approx(upright.skin_share, rel=0.15)
+    assert read.tilt is not None and abs(read.tilt - 45) < 8

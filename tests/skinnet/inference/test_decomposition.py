@@ -39,7 +39,7 @@ def test_a_repr_holds_numbers_and_no_arrays(
     means = {name: summary["maps"][name]["mean"] for name in ("melanin", "hemoglobin")}
     assert repr(decomposition) == (
         f"<Decomposition 512 x 512: melanin {means['melanin']:.3g}, "
-        f"hemoglobin {means['hemoglobin']:.3g} on skin, {summary['skin_share']:.0%} of the box>"
+        f"hemoglobin {means['hemoglobin']:.3g} on skin, {summary['skin_share']:.0%} of the crop>"
     )
     assert repr(Decomposer(skinless_file)(astronaut)) == "<Decomposition 512 x 512: no skin>"
 

@@ -110,3 +110,23 @@ def test_a_patch_is_seen_amid_its_mirror_images() -> None:
     turned = crop.turn_back(run_encoder(cut), SIZE)
     assert turned["offset"].shape == (1, 40, 80, 3) and (turned["mask"] > 0).any()
     assert (crop.fade((40, 80), photo.shape) == 1).all()
+
+
+def test_only_the_turned_square_was_read() -> None:
+    crop = crop_head(make_face(30.0), (400, 400))
+    inside = crop.find_inside()
+    assert inside.shape == (crop.box.height, crop.box.width)
+    assert np.count_nonzero(inside) == pytest.approx(160**2, rel=0.02)
+    u, v = np.meshgrid(*(np.arange(side) for side in inside.shape[::-1]))
+    middle = np.hypot(u - crop.box.width / 2, v - crop.box.height / 2) < 78
+    assert inside[middle].all() and not inside[:3, :3].any()
+
+
+@pytest.mark.parametrize(("left", "is_cut"), [(60, False), (39, False), (30, True)])
+def test_a_head_whose_face_is_cut_is_continued_outside(left: int, is_cut: bool) -> None:
+    face = make_face(0.0, middle=(left, 200))
+    crop = crop_head(face, (400, 400))
+    assert (crop.square is not None) == is_cut
+    assert crop.box.left == 0 and crop.find_inside().all()
+    cut = crop.cut(make_photo(), SIZE)
+    assert (cut.shape[0] == cut.shape[1]) == is_cut
