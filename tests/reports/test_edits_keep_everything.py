@@ -24,7 +24,7 @@ from skimage.data import astronaut
 
 from skinnet import Decomposer
 from skinnet.errors import InputError
-from skinnet.images import Picture, read_picture
+from skinnet.images import Picture, read_photo, read_picture
 from skinnet.images._icc import make_profile, make_srgb_profile
 from skinnet.images._mark import EDITED, Mark, read_mark
 from skinnet.images._named_spaces import ADOBE_RGB, DISPLAY_P3
@@ -92,6 +92,13 @@ def make_alpha(dtype: type = np.uint8) -> np.ndarray:
     """A cut-out: transparent at the left, and a soft edge."""
     ramp = np.clip((np.arange(FACE.shape[1]) - 20) / 30, 0, 1) * np.iinfo(dtype).max
     return np.broadcast_to(np.rint(ramp), FACE.shape[:2]).astype(dtype)
+
+
+@cache
+def find_untouched(alpha: bool) -> np.ndarray:
+    """Pixels that an edit of the face leaves as they are; a cut-out is read mixed with white."""
+    photo = read_photo(Image.fromarray(np.dstack([FACE, make_alpha()]))) if alpha else FACE
+    return np.asarray((load().edit(photo, melanin=2.0, hemoglobin=1.5) == photo).all(-1))
 
 
 def make_exif(orientation: int | None = None, **inner: Any) -> Image.Exif:
@@ -204,7 +211,7 @@ def test_profile_depth_alpha_and_colours(
     result = load_pixels(path)
     assert result.dtype == dtype and result.shape == stored.shape
     if suffix in LOSSLESS:
-        untouched = (edit_srgb() == FACE).all(-1)
+        untouched = find_untouched(alpha)
         assert 0.1 < untouched.mean() < 0.9
         kept = (result == stored).all(-1)
         assert kept[untouched].mean() > 0.99  # a change that is too small for 8 bits of sRGB
@@ -475,7 +482,7 @@ def test_cmyk_stays_cmyk(tmp_path: Path, suffix: str) -> None:
         )
         if suffix == ".tif":
             kept = (np.array(result) == stored).all(-1)
-            assert kept[(edit_srgb() == FACE).all(-1)].mean() > 0.99
+            assert kept[find_untouched(False)].mean() > 0.99
 
 
 def join_profile(kind: bytes, space: bytes, tables: dict[bytes, bytes]) -> bytes:
@@ -660,7 +667,7 @@ def test_jpeg_2000_keeps_profile_alpha_and_exif(tmp_path: Path, alpha: bool) -> 
         assert image.mode == ("RGBA" if alpha else "RGB")
         result = np.array(image)
     kept = (result == stored).all(-1)
-    assert kept[(edit_srgb() == FACE).all(-1)].mean() > 0.99
+    assert kept[find_untouched(alpha)].mean() > 0.99
     if alpha:
         np.testing.assert_array_equal(result[..., 3], make_alpha())
     else:
