@@ -31,6 +31,9 @@ def _open(name: str) -> onnxruntime.InferenceSession:
     options.log_severity_level = 4
     # The networks are small: more threads win nothing, and wait busily.
     options.intra_op_num_threads = 1
+    # Optimising the mesh's graph takes 80 ms, and saves 4 ms a face.
+    if name == "face_mesh":
+        options.graph_optimization_level = onnxruntime.GraphOptimizationLevel.ORT_DISABLE_ALL
     with as_file(files(__package__) / "models" / f"{name}.onnx") as path:
         return onnxruntime.InferenceSession(path, options, providers=["CPUExecutionProvider"])
 
