@@ -8,8 +8,10 @@ import numpy as np
 from numpy.typing import NDArray
 from PIL import Image, ImageDraw
 
-from benchmarks.portrait_faces import KnownFace, place_square
+from benchmarks.portrait_faces import KnownFace
 from skinnet.images import Box, resize
+from skinnet.images.faces._face_place import to_box
+from skinnet.images.faces._turned_square import TurnedSquare
 
 Photo = NDArray[np.uint8]
 
@@ -30,7 +32,7 @@ def turn(photo: Photo, box: Box, degrees: float) -> FacePicture:
     cos, sin = math.cos(math.radians(degrees)), math.sin(math.radians(degrees))
     x, y = (box.left + box.right - photo.shape[1]) / 2, (box.top + box.bottom - photo.shape[0]) / 2
     centre = turned.width / 2 + x * cos - y * sin, turned.height / 2 + x * sin + y * cos
-    return FacePicture(np.asarray(turned), [place_square(*centre, box.width)])
+    return FacePicture(np.asarray(turned), [to_box(TurnedSquare(*centre, box.width))])
 
 
 def shrink(photo: Photo, box: Box, ratio: float) -> FacePicture:

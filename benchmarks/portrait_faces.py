@@ -15,6 +15,8 @@ from numpy.typing import NDArray
 
 from skinnet.errors import InputError
 from skinnet.images import Box, read_photo
+from skinnet.images.faces._face_place import to_box
+from skinnet.images.faces._turned_square import TurnedSquare
 
 BY_HAND = {
     "C001059": Box(32, 78, 177, 223),
@@ -78,10 +80,4 @@ def _list_london(folder: Path) -> Iterator[KnownFace]:
         eyes = (points[RIGHT_EYE] + points[LEFT_EYE]) / 2
         height = float(np.linalg.norm(points[CHIN] - eyes))
         centre = eyes + LOWER * (points[CHIN] - eyes)
-        yield KnownFace(path, place_square(*centre, SIDE * height))
-
-
-def place_square(x: float, y: float, side: float) -> Box:
-    """Place a square around a point."""
-    left, top, whole = round(x - side / 2), round(y - side / 2), round(side)
-    return Box(left, top, left + whole, top + whole)
+        yield KnownFace(path, to_box(TurnedSquare(*centre, SIDE * height)))

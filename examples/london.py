@@ -21,6 +21,7 @@ from scipy.spatial import Delaunay
 from skimage.draw import polygon2mask, polygon_perimeter
 from skimage.morphology import dilation, disk, erosion
 
+from benchmarks.portrait_faces import read_template
 from examples._command import run
 from skinnet.appearance import HybridModel, save_maps
 from skinnet.cli import main as skinnet
@@ -67,12 +68,6 @@ FRONTAL = 1.15
 """Azimuth in radians beyond which a frontal portrait shows nothing."""
 
 
-def read_points(path: Path) -> np.ndarray:
-    """Read the points [189, 2] of a .tem file, in pixels."""
-    lines = path.read_text().split("\n")
-    return np.array([line.split() for line in lines[1 : int(lines[0]) + 1]], float)
-
-
 def average_points(points: Sequence[np.ndarray]) -> np.ndarray:
     """Average the landmarks in texture coordinates, after aligning each portrait by its eyes."""
     aligned = []
@@ -104,7 +99,7 @@ def warp_portraits(folder: Path) -> tuple[list[Path], list[np.ndarray], np.ndarr
             f"{folder} has {len(files)} portraits with landmarks (NNN_03.jpg and NNN_03.tem), and "
             "three are needed; name the folder of the set."
         )
-    points = [read_points(file) for file in files]
+    points = [read_template(file) for file in files]
     mean = average_points(points)
     # The set's outer points lie on hair and neck: triangles are those of the outline's inside.
     used = np.unique(np.concatenate([OUTLINE, np.arange(109)]))
@@ -147,7 +142,7 @@ def _project(places: np.ndarray) -> np.ndarray:
 
 def write_skins(portraits: Path, output: Path, count: int) -> None:
     """Sample skins for synthetic faces from the hybrid model in that folder."""
-    mean = average_points([read_points(file) for file in sorted(portraits.glob("*.tem"))])
+    mean = average_points([read_template(file) for file in sorted(portraits.glob("*.tem"))])
     model = HybridModel.load(output / "model" / "hybrid.npz")
     skins = sample_model_skins(model, find_places(mean), count)
     save_model_skins(output / "skins.npz", skins)

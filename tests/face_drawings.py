@@ -4,7 +4,7 @@ import numpy as np
 from PIL import Image, ImageDraw
 
 from skinnet.images.faces._eyes import _EYES
-from skinnet.images.faces._teeth import _INNER_LIPS
+from skinnet.images.faces._mesh_outlines import INNER_LIPS
 
 SKIN, WHITE, IRIS, RED = (200, 140, 120), (215, 205, 200), (60, 40, 30), (190, 80, 80)
 
@@ -20,7 +20,7 @@ def place_landmarks() -> np.ndarray:
         landmarks[list(eye.iris)] = ends + (x, 100)
     angles = np.pi - np.arange(20) * 2 * np.pi / 20
     lips = np.stack([250 + 60 * np.cos(angles), 300 + 25 * np.sin(angles)], -1)
-    landmarks[list(_INNER_LIPS)] = lips
+    landmarks[list(INNER_LIPS)] = lips
     return landmarks
 
 
@@ -40,6 +40,6 @@ def draw_mouth(landmarks: np.ndarray, teeth: tuple[int, ...] = WHITE) -> np.ndar
     """An open mouth with upper teeth above a tongue, uint8 [400, 500, 3]."""
     image = Image.new("RGB", (500, 400), SKIN)
     draw = ImageDraw.Draw(image)
-    draw.polygon([tuple(point) for point in landmarks[list(_INNER_LIPS)].tolist()], RED)
+    draw.polygon([tuple(point) for point in landmarks[list(INNER_LIPS)].tolist()], RED)
     draw.rectangle((215, 285, 285, 300), teeth)
     return np.array(image)

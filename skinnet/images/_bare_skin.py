@@ -6,16 +6,20 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy import ndimage
 
+from skinnet.images._connected_parts import keep_large, label_parts
 from skinnet.images._guided_filter import enlarge_guided
-from skinnet.images._skin_colours import compute_features, fit_normal, measure_distance, step_down
+from skinnet.images._skin_colours import (
+    compute_features,
+    fit_normal,
+    measure_distance,
+    measure_usual_squares,
+    step_down,
+)
 from skinnet.images.resizing import resize
 from skinnet.images.srgb import srgb_to_linear
 
 _SIZE = 320
 """Longer side in pixels at which skin is segmented."""
-
-_SKIN, _SKIN_PRECISION = np.array([0.757, -0.296]), np.array([[37.1, 13.6], [13.6, 33.4]])
-"""log R/G and log B/G of skin in portraits of all tones: mean and inverse covariance."""
 
 _MOST_DISTANT, _DISTANCE_WIDTH = 3.4, 0.35
 """Mahalanobis distance to the skins of all people at which half is still skin, and the width of
@@ -65,40 +69,27 @@ def segment_bare_skin(photo: NDArray[np.uint8]) -> NDArray[np.float32]:
 
 def _segment(linear: NDArray[Any]) -> NDArray[np.float32]:
     """Probability of skin in linear sRGB [h, w, 3]."""
-    usual = step_down(_measure_usual(linear), _MOST_DISTANT, _DISTANCE_WIDTH)
+    features = compute_features(linear)
+    distance = np.sqrt(measure_usual_squares(features[..., :2]))
+    usual = step_down(distance, _MOST_DISTANT, _DISTANCE_WIDTH)
     seeds = _find_largest(usual > 0.5)
     if seeds.mean() < _LEAST_PART:
         return np.zeros(usual.shape, np.float32)
-    mean, covariance = fit_normal(compute_features(linear)[seeds])
+    mean, covariance = fit_normal(features[seeds])
     distance = measure_distance(linear, mean, covariance + _SHADING)
     own = step_down(distance, _OWN_DISTANCE, 0.35)
     return _clean(own * np.sqrt(usual))
 
 
-def _measure_usual(linear: NDArray[Any]) -> NDArray[Any]:
-    """Mahalanobis distance of colours [h, w, 3] to the skins of all people."""
-    difference = compute_features(linear)[..., :2] - _SKIN
-    distance: NDArray[Any] = np.sqrt(
-        np.einsum("hwi,ij,hwj->hw", difference, _SKIN_PRECISION, difference)
-    )
-    return distance
-
-
 def _find_largest(area: NDArray[np.bool_]) -> NDArray[np.bool_]:
-    labels, count = ndimage.label(ndimage.binary_opening(area, iterations=2))
-    sizes = np.bincount(labels.ravel(), minlength=2)[1:]
-    largest: NDArray[np.bool_] = labels == 1 + sizes.argmax()
-    return largest & (count > 0)
+    labels, sizes = label_parts(ndimage.binary_opening(area, iterations=2))
+    largest: NDArray[np.bool_] = (labels == sizes.argmax()) & (labels > 0)
+    return largest
 
 
 def _clean(score: NDArray[Any]) -> NDArray[np.float32]:
     """Keep the large parts, and close their small holes."""
-    labels, count = ndimage.label(ndimage.binary_opening(score > 0.5, iterations=2))
-    if count == 0:
-        return np.zeros(score.shape, np.float32)
-    sizes = np.bincount(labels.ravel())
-    sizes[0] = 0
-    large = np.isin(labels, np.flatnonzero(sizes > _LEAST_PART * sizes.max()))
+    large = keep_large(ndimage.binary_opening(score > 0.5, iterations=2), _LEAST_PART)
     closed = ndimage.binary_closing(np.pad(large, 4, mode="edge"), iterations=3)[4:-4, 4:-4]
     near = ndimage.binary_dilation(large | closed, iterations=2)
     return np.where(closed, np.maximum(score, 0.5 + score / 2), score * near).astype(np.float32)

@@ -12,6 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from skinnet.errors import InputError
+from skinnet.images._skin_colours import measure_usual_squares
 from skinnet.images.box import Box
 from skinnet.images.faces._largest import choose_largest
 from skinnet.images.faces.finder import find_faces
@@ -58,10 +59,9 @@ _EXACT, _ROUNDED, _SHARE = 0.6, 0.2, 0.45
 all are, and between them those are whose residuals are less than this share of the chroma's spread
 (75 %). Dark or even skin has small residuals too, but its chroma varies no more than they do."""
 
-_SKIN, _SKIN_PRECISION = np.array([0.757, -0.296]), np.array([[37.1, 13.6], [13.6, 33.4]])
 _SKIN_DISTANCE, _LEAST_RED, _MUCH_RED, _MOST_BLUE = 12.0, 0.15, 0.85, 0.2
-"""log R/G and log B/G of skin in portraits: mean, inverse covariance, squared distance of 99 %, and
-limits: tones are seldom as red as `_MUCH_RED`."""
+"""Squared distance of 99 % of the portraits from all skin, and limits of log R/G and log B/G:
+tones are seldom as red as `_MUCH_RED`."""
 
 _EVEN, _SHADED = 65.0, 125.0
 """Ranges of luma of bare patches of skin: of even ones, and the largest."""
@@ -175,16 +175,7 @@ def _find_tone_anywhere(region: NDArray[np.uint8], cells: _Cells) -> str | None:
 def _has_colour_of_skin(ratios: NDArray[np.float32]) -> bool:
     """Whether a colour may be that of a patch of skin, which lies on one curve as well."""
     is_red = ratios[0] > _MUCH_RED and ratios[1] < _MOST_BLUE
-    return bool(is_red or _measure_distance(ratios[None])[0] < _SKIN_DISTANCE)
-
-
-def _measure_distance(ratios: NDArray[np.float32]) -> NDArray[np.float64]:
-    """Measure squared Mahalanobis distances [n] of colours [n, 2] from skin."""
-    difference = ratios - _SKIN
-    distance: NDArray[np.float64] = np.einsum(
-        "ni,ij,nj->n", difference, _SKIN_PRECISION, difference
-    )
-    return distance
+    return bool(is_red or measure_usual_squares(ratios[None])[0] < _SKIN_DISTANCE)
 
 
 def _fit_tone(
@@ -272,7 +263,7 @@ def _find_skin(photo: NDArray[np.uint8], face: Box) -> NDArray[np.float32]:
     areas = [photo[_place_area(face, area).slices][::step, ::step] for area in SKIN_AREAS]
     means = [srgb_to_linear(area).mean((0, 1)) for area in areas if area.size]
     ratios = _log_ratios(np.array(means))
-    skin: NDArray[np.float32] = ratios[_measure_distance(ratios).argmin()]
+    skin: NDArray[np.float32] = ratios[measure_usual_squares(ratios).argmin()]
     return skin
 
 

@@ -6,6 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy import ndimage
 
+from skinnet.images._connected_parts import keep_small, label_parts
 from skinnet.images._face_cover import find_cover
 from skinnet.images._guided_filter import enlarge_guided, filter_guided, make_guide
 from skinnet.images._skin_colours import (
@@ -15,7 +16,7 @@ from skinnet.images._skin_colours import (
     fit_normal,
     measure_distance,
 )
-from skinnet.images._skin_gaps import fill_gaps, keep_small
+from skinnet.images._skin_gaps import fill_gaps
 from skinnet.images.faces._face_place import place_face
 from skinnet.images.faces._face_zones import FaceZones, grow, mark_zones
 from skinnet.images.resizing import resize
@@ -187,12 +188,10 @@ def _find_beard(log: NDArray[Any], zones: FaceZones, seeds: _Mask, side: float) 
 
 def _find_own(skin: _Mask, zones: FaceZones, prior: _Image, side: float) -> _Mask:
     """The parts that belong to the face, and large ones that the coarse mask shows as well."""
-    labels, count = ndimage.label(
-        ndimage.binary_opening(skin, iterations=max(1, round(0.01 * side)))
-    )
-    sizes = np.bincount(labels.ravel(), minlength=count + 1)
-    inside = np.bincount(labels[grow(zones.face, -0.02 * side)], minlength=count + 1)
-    sums = np.bincount(labels.ravel(), prior.ravel(), minlength=count + 1)
+    opened = ndimage.binary_opening(skin, iterations=max(1, round(0.01 * side)))
+    labels, sizes = label_parts(opened)
+    inside = np.bincount(labels[grow(zones.face, -0.02 * side)], minlength=len(sizes))
+    sums = np.bincount(labels.ravel(), prior.ravel(), minlength=len(sizes))
     is_own = (inside > 0.002 * side**2) | ((sums > 0.5 * sizes) & (sizes > 0.003 * side**2))
     is_own[0] = False
     own: _Mask = is_own[labels]

@@ -1,4 +1,4 @@
-"""Colours of one person's skin: a normal distribution of log chromaticity and luminance."""
+"""Colours of skin as normal distributions: of all people's, and of one person's."""
 
 from typing import Any
 
@@ -10,6 +10,9 @@ from skinnet.images.srgb import LUMINANCE_WEIGHTS
 
 _MIN_COVARIANCE = np.diag([0.06, 0.07, 0.32]) ** 2
 """Least covariance of log R/G, log B/G and log luminance: shading and noise of even skin."""
+
+_SKIN, _SKIN_PRECISION = np.array([0.757, -0.296]), np.array([[37.1, 13.6], [13.6, 33.4]])
+"""log R/G and log B/G of skin in portraits of all tones: mean and inverse covariance."""
 
 _SPECULAR_SHARES = (0.15, 0.3, 0.45, 0.6, 0.75, 0.9)
 """Shares of a pixel's darkest channel that are tried as white specular reflection."""
@@ -27,6 +30,13 @@ def compute_features(linear: _Array) -> _Array:
     """Log R/G, log B/G and log luminance of linear sRGB."""
     red, green, blue = np.moveaxis(np.log(linear), -1, 0)
     return np.stack([red - green, blue - green, np.log(linear @ LUMINANCE_WEIGHTS)], -1)
+
+
+def measure_usual_squares(ratios: _Array) -> _Array:
+    """Squared Mahalanobis distances [...] of log R/G and log B/G [..., 2] from all skin."""
+    difference = ratios - _SKIN
+    squares: _Array = np.einsum("...i,ij,...j->...", difference, _SKIN_PRECISION, difference)
+    return squares
 
 
 def fit_normal(samples: _Array) -> tuple[_Array, _Array]:

@@ -6,6 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy import ndimage
 
+from skinnet.images._connected_parts import keep_small, label_parts
 from skinnet.images.faces._face_zones import FaceZones, grow
 
 _LARGEST_HOLE = 0.15
@@ -52,15 +53,6 @@ def fill_gaps(
     return filled & ~grow(hidden, 1.0) & ~beard
 
 
-def keep_small(area: _Mask, largest: float) -> _Mask:
-    """Keep the connected parts that are smaller than a number of pixels."""
-    labels, count = ndimage.label(area)
-    small = np.bincount(labels.ravel(), minlength=count + 1) < largest
-    small[0] = False
-    kept: _Mask = small[labels]
-    return kept
-
-
 def _find_holes(skin: _Mask, zones: FaceZones, brightness: NDArray[Any], side: float) -> _Mask:
     """Small holes in skin; dark ones near the eyes are frames of glasses, lashes and brows."""
     hidden = zones.eyes | zones.mouth
@@ -80,9 +72,8 @@ def _find_shadow(skin: _Mask, zones: FaceZones, difference: NDArray[Any], side: 
     )
     # What reaches far up into the face is a beard.
     holes = (zones.face | gap) & ~skin & ~grow(zones.lips, 0.02 * side) & ~zones.brows & ~zones.eyes
-    labels, count = ndimage.label(holes)
-    sizes = np.bincount(labels.ravel(), minlength=count + 1)
-    deep = np.bincount(labels[grow(zones.face, -0.07 * side)], minlength=count + 1)
+    labels, sizes = label_parts(holes)
+    deep = np.bincount(labels[grow(zones.face, -0.07 * side)], minlength=len(sizes))
     is_shadow = (deep < 0.15 * sizes) & (deep < _LEAST_BEARD * side**2)
     is_shadow[0] = False
     shadow: _Mask = gap & is_shadow[labels]

@@ -6,6 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy import ndimage
 
+from skinnet.images._connected_parts import keep_large
 from skinnet.images._face_skin import segment_face_skin
 from skinnet.images._skin_colours import compute_features, fit_normal, measure_distance, step_down
 from skinnet.images.box import Box
@@ -119,12 +120,6 @@ def _head_and_neck(x: NDArray[Any], y: NDArray[Any]) -> NDArray[Any]:
 
 def _clean(score: NDArray[Any]) -> NDArray[np.float32]:
     """Keep the large connected parts, close their holes, and soften the edges."""
-    solid = ndimage.binary_opening(score > 0.5, iterations=2)
-    labels, count = ndimage.label(solid)
-    if count == 0:
-        return np.zeros(score.shape, np.float32)
-    sizes = np.bincount(labels.ravel(), minlength=count + 1)
-    sizes[0] = 0
-    large = np.isin(labels, np.flatnonzero(sizes > 0.06 * sizes.max()))
+    large = keep_large(ndimage.binary_opening(score > 0.5, iterations=2), 0.06)
     closed = ndimage.binary_closing(large, iterations=2)
     return ndimage.gaussian_filter(closed.astype(np.float32), 1.0).clip(0, 1)

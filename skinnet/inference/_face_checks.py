@@ -11,7 +11,7 @@ from skinnet.images._colour_content import check_colour
 from skinnet.images.box import Box
 from skinnet.images.faces._turned_square import TurnedSquare
 from skinnet.images.faces.face import Face
-from skinnet.inference._head_crop import HeadCrop, place_face
+from skinnet.inference._head_crop import HeadCrop, place_face_in_cut
 
 _LEAST_WIDTH = 24
 """Smallest width of a face, in pixels."""
@@ -109,7 +109,7 @@ def _check_colour(photo: NDArray[np.uint8], crop: HeadCrop, face: Face, name: st
         return
     size = min(round(crop.square.side), _COLOUR_SIZE)
     upright = crop.square.cut(photo, size)
-    check_colour(upright, Box(0, 0, size, size), place_face(size), name)
+    check_colour(upright, Box(0, 0, size, size), place_face_in_cut(size), name)
 
 
 def _place_square(face: Face) -> TurnedSquare:

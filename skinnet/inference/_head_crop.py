@@ -10,10 +10,10 @@ from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
-from PIL import Image, ImageDraw
 from scipy import ndimage
 
 from skinnet.images.box import Box
+from skinnet.images.faces._outlines import fill_outlines
 from skinnet.images.faces._turned_square import TurnedSquare
 from skinnet.images.faces.face import Face
 from skinnet.images.faces.framing import HEAD_CENTRE, frame_head
@@ -71,14 +71,10 @@ class HeadCrop(NamedTuple):
         return dict(outputs) | {name: values[None] for name, values in turned.items()}
 
     def find_inside(self) -> NDArray[np.bool_]:
-        """Which pixels [H, W] of the rectangle are inside the square."""
+        """Which pixels [H, W] of the rectangle are read: those inside the square."""
         if self.square is None:
             return np.ones((self.box.height, self.box.width), np.bool_)
-        corners = self.square.place(np.array([[0.0, 0], [1, 0], [1, 1], [0, 1]]), 1)
-        picture = Image.new("1", (self.box.width, self.box.height))
-        corners -= (self.box.left + 0.5, self.box.top + 0.5)
-        ImageDraw.Draw(picture).polygon(list(map(tuple, corners)), fill=1)
-        return np.array(picture)
+        return fill_outlines([self.square.corners], box=self.box).inside
 
     def fade(self, shape: tuple[int, ...], photo: tuple[int, ...]) -> NDArray[np.float32]:
         """Weights [h, w] of the rectangle that fall to 0 at sides inside the photograph.
@@ -152,7 +148,7 @@ def crop_patch(photo: tuple[int, ...]) -> HeadCrop:
     return HeadCrop(Box(0, 0, width, height), square)
 
 
-def place_face(size: int) -> Box:
+def place_face_in_cut(size: int) -> Box:
     """The face's box in the cut of a turned head of `size` pixels."""
     side = size / _MARGIN
     left, top = (size - side) / 2, size / 2 - HEAD_CENTRE * side
@@ -176,7 +172,7 @@ def _bound(square: TurnedSquare, width: int, height: int) -> Box:
 
 def _list_ends(square: TurnedSquare) -> tuple[int, int, int, int]:
     """Left, top, right and bottom of a square, which may exceed the photograph."""
-    x, y = square.place(np.array([[0.0, 0.0], [0.0, 1.0], [1.0, 0.0], [1.0, 1.0]]), 1).T
+    x, y = square.corners.T
     return round(x.min()), round(y.min()), round(x.max()), round(y.max())
 
 

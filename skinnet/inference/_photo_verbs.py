@@ -43,9 +43,7 @@ _READ, _FACELESS, _WRITTEN_NOT, _READ_NOT = (
 def predict(options: argparse.Namespace) -> bool:
     """Decompose every input; report bad inputs and continue. Returns whether none was bad."""
     check_choice(options.faces)
-    if options.region == "face":
-        open_ahead()
-    decomposer = Decomposer(options.model)
+    decomposer = _make_decomposer(options)
     decomposer.load()
     found = walk(options.input, options.recursive)
     counts: Counter[str] = Counter()
@@ -63,6 +61,13 @@ def predict(options: argparse.Namespace) -> bool:
     if not single or found.passed_over or len(options.input) > 1:
         note(_describe_run(counts, found))
     return counts.total() == counts[_READ]
+
+
+def _make_decomposer(options: argparse.Namespace) -> Decomposer:
+    """Make the decomposer that is asked for, and begin to open what finds faces."""
+    if options.region == "face":
+        open_ahead()
+    return Decomposer(options.model)
 
 
 def _predict_one(decomposer: Decomposer, found: Found, options: argparse.Namespace) -> str:
@@ -148,9 +153,7 @@ def edit(options: argparse.Namespace) -> None:
     check_choice(options.faces)
     if options.output is not None:
         find_format(options.output)
-    if options.region == "face":
-        open_ahead()
-    decomposer = Decomposer(options.model)
+    decomposer = _make_decomposer(options)
     source, picture, notes = _read(find_one(options.input))
     suffix, changes = choose_suffix(picture, "" if source.path is None else source.path.suffix)
     target = choose_edit_target(source, options.output, suffix)

@@ -34,9 +34,7 @@ def find_skin(
     if subject.face is None or not (coarse > SKIN_THRESHOLD).any():
         return resize(coarse, box.width, box.height)
     landmarks = subject.face.landmarks - np.array([box.left, box.top], np.float32)
-    mask = segment_face_skin(photo[box.slices], landmarks, coarse)
-    own: NDArray[np.float32] = subject.keep_own_skin({"mask": mask[None]})["mask"][0]
-    return own
+    return subject.keep_own_skin(segment_face_skin(photo[box.slices], landmarks, coarse))
 
 
 def adopt_mask(

@@ -15,7 +15,7 @@ from skinnet.images.faces.face import Face
 from skinnet.images.faces.finder import find_faces
 from skinnet.inference._face_checks import check_face
 from skinnet.inference._face_choice import FaceChoice, check_choice, choose_faces, note_others
-from skinnet.inference._head_crop import Arrays, HeadCrop, crop_head, crop_patch
+from skinnet.inference._head_crop import HeadCrop, crop_head, crop_patch
 from skinnet.inference.decomposition import SKIN_THRESHOLD
 
 Region = Literal["face", "skin"]
@@ -51,15 +51,15 @@ class Subject(NamedTuple):
     skin: NDArray[np.float32] | None = None
     notes: tuple[str, ...] = ()
 
-    def keep_own_skin(self, outputs: Arrays) -> dict[str, NDArray[np.float32]]:
-        """Set the mask to 0 where another face is nearer, measured in sides of each face."""
-        mask = outputs["mask"]
+    def keep_own_skin(self, mask: NDArray[np.float32]) -> NDArray[np.float32]:
+        """Set a mask [h, w] to 0 where another face is nearer, measured in sides of each face."""
         others = [face for face in self.faces or () if face is not self.face]
         if self.face is None or not others:
-            return dict(outputs)
-        distance = [_measure_distance(face, self.crop.box, mask.shape[1:]) for face in others]
-        own = _measure_distance(self.face, self.crop.box, mask.shape[1:]) <= np.min(distance, 0)
-        return dict(outputs) | {"mask": mask * own.astype(np.float32)}
+            return mask
+        distance = [_measure_distance(face, self.crop.box, mask.shape) for face in others]
+        own = _measure_distance(self.face, self.crop.box, mask.shape) <= np.min(distance, 0)
+        kept: NDArray[np.float32] = mask * own.astype(np.float32)
+        return kept
 
 
 def find_subjects(
@@ -78,14 +78,15 @@ def find_subjects(
             that are asked for can be read, or no skin was found.
         NoFaceError: No face was found.
     """
-    check_choice("largest" if faces is None else faces)
+    choice = "largest" if faces is None else faces
+    check_choice(choice)
     if region not in ("face", "skin"):
         raise InputError(f"region is face or skin; got {region!r}.")
     if region == "face":
-        return _find_face_subjects(photo, name, "largest" if faces is None else faces)
-    if faces not in (None, "largest"):
+        return _find_face_subjects(photo, name, choice)
+    if choice != "largest":
         raise InputError(
-            f"faces={faces!r} is asked for, but region='skin' looks for no face; leave out one."
+            f"faces={choice!r} is asked for, but region='skin' looks for no face; leave out one."
         )
     return [_find_bare_skin(photo, name)]
 

@@ -12,7 +12,6 @@ from numpy.typing import NDArray
 from PIL import Image
 
 from skinnet.errors import InputError
-from skinnet.images.box import Box
 from skinnet.images.faces._face_parts import find_face_parts
 from skinnet.images.photograph import read_picture
 from skinnet.images.picture import Picture
@@ -27,6 +26,7 @@ from skinnet.inference._transparency import note_transparency
 from skinnet.inference.decomposition import Decomposition
 from skinnet.inference.full_resolution._colour_table import tabulate_colours
 from skinnet.inference.full_resolution._layers import Layers, enlarge_layers, sharpen_layers
+from skinnet.inference.full_resolution._pasting import paste_layers
 from skinnet.inference.onnx_model import (
     CAPTURE_NAMES,
     MAP_NAMES,
@@ -260,11 +260,11 @@ class Decomposer:
         encoder_outputs, skin = self._read(photo, subject)
         layers = self._make_layers(photo[box.slices], encoder_outputs, skin, detail)
         inside = subject.crop.find_inside()
-        _clear_outside(layers, inside, photo[box.slices])
+        pasted = paste_layers(layers, photo, box, inside)
         alpha = None if picture.alpha is None else picture.alpha[box.slices]
-        notes = note_transparency(alpha, layers.mask, name)
+        notes = note_transparency(alpha, pasted["mask"][box.slices], name)
         return Decomposition(
-            **_paste_layers(layers, photo, box),
+            **pasted,
             light=self._name_light(encoder_outputs),
             camera=_name_camera(encoder_outputs),
             box=box,
@@ -318,7 +318,8 @@ class Decomposer:
         size = self.encoder.working_size
         cut = subject.crop.cut(photo, size)
         encoder_outputs = self.encoder.run({"image": cut[None]})
-        return subject.keep_own_skin(subject.crop.turn_back(encoder_outputs, size))
+        outputs = subject.crop.turn_back(encoder_outputs, size)
+        return outputs | {"mask": subject.keep_own_skin(outputs["mask"][0])[None]}
 
     def _decode(self, encoder_outputs: _Arrays) -> NDArray[np.float32]:
         """The decoder's picture, sRGB [h, w, 3] in [0, 1]."""
@@ -394,23 +395,3 @@ def _name_camera(encoder_outputs: _Arrays) -> dict[str, Any]:
         "components": encoder_outputs["camera"][0].tolist(),
         "white_balance": {"r_over_g": r_over_g, "b_over_g": b_over_g},
     }
-
-
-def _clear_outside(layers: Layers, inside: NDArray[np.bool_], crop: NDArray[np.uint8]) -> None:
-    """Set maps to 0 and the reconstruction to the photograph outside of a turned square."""
-    outside = ~inside
-    if outside.any():
-        for name, layer in layers._asdict().items():
-            layer[outside] = crop[outside] if name == "reconstruction" else 0
-
-
-def _paste_layers(layers: Layers, photo: NDArray[np.uint8], box: Box) -> dict[str, NDArray[Any]]:
-    """Layers of the photograph's size: 0 outside the box, the reconstruction the photograph."""
-    if (box.height, box.width) == photo.shape[:2]:
-        return layers._asdict()
-    pasted: dict[str, NDArray[Any]] = {}
-    for name, layer in layers._asdict().items():
-        shape = (*photo.shape[:2], *layer.shape[2:])
-        pasted[name] = photo.copy() if name == "reconstruction" else np.zeros(shape, layer.dtype)
-        pasted[name][box.slices] = layer
-    return pasted

@@ -5,6 +5,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from skinnet.images.faces._mesh_outlines import LEFT_EYE, RIGHT_EYE
 from skinnet.images.faces._near_white import select_near_white
 from skinnet.images.faces._outlines import Patch, fill_outlines, measure_area, measure_depth
 from skinnet.images.faces._skin_reference import Colours
@@ -36,14 +37,8 @@ class _Eye(NamedTuple):
 
 
 _EYES = (
-    _Eye(
-        (33, 7, 163, 144, 145, 153, 154, 155, 133, 173, 157, 158, 159, 160, 161, 246),
-        (468, 469, 470, 471, 472),
-    ),
-    _Eye(
-        (263, 249, 390, 373, 374, 380, 381, 382, 362, 398, 384, 385, 386, 387, 388, 466),
-        (473, 474, 475, 476, 477),
-    ),
+    _Eye(RIGHT_EYE, (468, 469, 470, 471, 472)),
+    _Eye(LEFT_EYE, (473, 474, 475, 476, 477)),
 )
 
 _INNER_CORNER = 8

@@ -7,6 +7,7 @@ from numpy.typing import NDArray
 
 from skinnet.images.box import Box
 from skinnet.images.faces._face_mesh import MESH_POINTS
+from skinnet.images.faces._mesh_outlines import BROW, CHIN
 from skinnet.images.faces._turned_square import TurnedSquare
 
 _SIDE, _RAISE = 3.37, 0.088
@@ -16,8 +17,6 @@ patterns (Liao et al. 2007), with which the encoder's crops were made."""
 
 _EYES = ((263, 362), (33, 133))
 """Corners of the person's left eye, and of the right one."""
-
-_BROW, _CHIN = 9, 152
 
 
 def place_face(landmarks: NDArray[np.float32]) -> TurnedSquare:
@@ -41,7 +40,7 @@ def to_box(square: TurnedSquare) -> Box:
 def _measure_tilt(mesh: NDArray[np.float64]) -> float:
     """Angle in radians between the picture, and the eyes' line and the face's axis together."""
     left, right = (mesh[list(corners)].mean(0) for corners in _EYES)
-    across, down = left - right, mesh[_CHIN] - mesh[_BROW]
+    across, down = left - right, mesh[CHIN] - mesh[BROW]
     directions = [complex(*across), complex(down[1], -down[0])]
     total = sum(each / max(abs(each), 1e-9) for each in directions)
     return math.atan2(total.imag, total.real)

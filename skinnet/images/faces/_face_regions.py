@@ -5,6 +5,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from skinnet.images.faces._mesh_outlines import CHIN, INNER_LIPS, LIPS
 from skinnet.images.faces._outlines import (
     Outline,
     Patch,
@@ -21,7 +22,7 @@ _NECK_START, _NECK_END = 0.06, 0.3
 """Distances of the neck's ends from the jaw line, in lengths from the forehead to the chin."""
 
 _JAW = (150, 149, 176, 148, 152, 377, 400, 378, 379)
-_TOP, _CHIN = 10, 152
+_TOP = 10
 
 
 class _Part(NamedTuple):
@@ -46,10 +47,7 @@ _WHOLE = {
     "forehead": _Part((10, 109, 67, 103, 104, 105, 66, 107, 9, 336, 296, 334, 333, 332, 297, 338)),
     # From the bridge to the tip, without nostrils.
     "nose": _Part((6, 122, 174, 198, 49, 220, 45, 4, 275, 440, 279, 420, 399, 351)),
-    "lips": _Part(
-        (61, 146, 91, 181, 84, 17, 314, 405, 321, 375, 291, 409, 270, 269, 267, 0, 37, 39, 40, 185),
-        (78, 95, 88, 178, 87, 14, 317, 402, 318, 324, 308, 415, 310, 311, 312, 13, 82, 81, 80, 191),
-    ),
+    "lips": _Part(LIPS, INNER_LIPS),
     "chin": _Part((182, 83, 18, 313, 406, 418, 262, 369, 396, 175, 171, 140, 32, 194)),
 }
 
@@ -121,5 +119,5 @@ def _list_visible_parts(landmarks: NDArray[np.float32], name: str) -> list[_Part
 def _outline_neck(landmarks: NDArray[np.float32]) -> Outline:
     """Below the jaw line, in the direction of the face's axis."""
     jaw = landmarks[list(_JAW)].astype(np.float64)
-    down = landmarks[_CHIN].astype(np.float64) - landmarks[_TOP]
+    down = landmarks[CHIN].astype(np.float64) - landmarks[_TOP]
     return np.concatenate([jaw + _NECK_START * down, (jaw + _NECK_END * down)[::-1]])

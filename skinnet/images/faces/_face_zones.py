@@ -6,24 +6,23 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy import ndimage
 
-from skinnet.images.faces._outlines import Outline, fill_outlines
+from skinnet.images.faces._mesh_outlines import (
+    BROW,
+    CHIN,
+    INNER_LIPS,
+    LEFT_EYE,
+    LIPS,
+    RIGHT_EYE,
+)
+from skinnet.images.faces._outlines import mark_outlines
 
 _OVAL = (
     *(10, 338, 297, 332, 284, 251, 389, 356, 454, 323, 361, 288, 397, 365, 379, 378, 400, 377),
     *(152, 148, 176, 149, 150, 136, 172, 58, 132, 93, 234, 127, 162, 21, 54, 103, 67, 109),
 )
-_EYES = (
-    (33, 7, 163, 144, 145, 153, 154, 155, 133, 173, 157, 158, 159, 160, 161, 246),
-    (263, 249, 390, 373, 374, 380, 381, 382, 362, 398, 384, 385, 386, 387, 388, 466),
-)
 _BROWS = (
     (70, 63, 105, 66, 107, 55, 65, 52, 53, 46),
     (300, 293, 334, 296, 336, 285, 295, 282, 283, 276),
-)
-_LIPS = (61, 146, 91, 181, 84, 17, 314, 405, 321, 375, 291, 409, 270, 269, 267, 0, 37, 39, 40, 185)
-_MOUTH = (
-    *(78, 95, 88, 178, 87, 14, 317, 402, 318, 324),
-    *(308, 415, 310, 311, 312, 13, 82, 81, 80, 191),
 )
 _NOSTRILS = (98, 240, 64, 48, 115, 220, 45, 4, 275, 440, 344, 278, 294, 460, 327, 326, 2, 97)
 _JAW = (132, 58, 172, 136, 150, 149, 176, 148, 152, 377, 400, 378, 379, 365, 397, 288, 361)
@@ -33,7 +32,6 @@ _CHIN_PAD = (200, 201, 208, 171, 152, 396, 428, 421)
 _CLOTH = (6, 117, 123, *_JAW, 352, 346)
 """Outline of a face mask, from the bridge of the nose to the jaw."""
 
-_BROW, _CHIN = 9, 152
 _NECK = 0.45
 """Length of the neck below the jaw, in distances from the brows to the chin."""
 
@@ -79,21 +77,21 @@ def mark_zones(landmarks: NDArray[np.float32], shape: tuple[int, ...]) -> FaceZo
     """
 
     def mark(*outlines: tuple[int, ...]) -> NDArray[np.bool_]:
-        return _fill([landmarks[list(outline)] for outline in outlines], shape)
+        return mark_outlines([landmarks[list(outline)] for outline in outlines], shape)
 
-    down = landmarks[_CHIN] - landmarks[_BROW]
+    down = landmarks[CHIN] - landmarks[BROW]
     jaw = landmarks[list(_JAW)]
-    neck = _fill([np.concatenate([jaw, jaw[::-1] + _NECK * down])], shape)
+    neck = mark_outlines([np.concatenate([jaw, jaw[::-1] + _NECK * down])], shape)
     face = mark(_OVAL)
-    x, y = landmarks[_CHIN]
+    x, y = landmarks[CHIN]
     rows, columns = np.ogrid[: shape[0], : shape[1]]
     right = (columns + 0.5 - x) * down[1] - (rows + 0.5 - y) * down[0] < 0
     return FaceZones(
         face,
-        mark(*_EYES),
+        mark(RIGHT_EYE, LEFT_EYE),
         mark(*_BROWS),
-        mark(_LIPS),
-        mark(_MOUTH),
+        mark(LIPS),
+        mark(INNER_LIPS),
         mark(_NOSTRILS),
         neck & ~face,
         mark(_BEARD),
@@ -102,14 +100,6 @@ def mark_zones(landmarks: NDArray[np.float32], shape: tuple[int, ...]) -> FaceZo
         right,
         down,
     )
-
-
-def _fill(outlines: list[Outline], shape: tuple[int, ...]) -> NDArray[np.bool_]:
-    """Pixels of a picture of a shape [h, w, ...] inside some outlines."""
-    filled = np.zeros(shape[:2], np.bool_)
-    patch = fill_outlines(outlines).clip(*shape[:2])
-    filled[patch.box.slices] = patch.inside
-    return filled
 
 
 def grow(zone: NDArray[np.bool_], distance: float) -> NDArray[np.bool_]:

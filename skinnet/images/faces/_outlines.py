@@ -54,9 +54,11 @@ def frame_outlines(outlines: Sequence[Outline]) -> Box:
     return Box(left, top, max(right, left + 1), max(bottom, top + 1))
 
 
-def fill_outlines(outlines: Sequence[Outline], holes: Sequence[Outline] = ()) -> Patch:
-    """The pixels inside any of the outlines and in none of the holes."""
-    box = frame_outlines(outlines)
+def fill_outlines(
+    outlines: Sequence[Outline], holes: Sequence[Outline] = (), box: Box | None = None
+) -> Patch:
+    """The pixels inside any of the outlines and in none of the holes, within a box if given."""
+    box = frame_outlines(outlines) if box is None else box
     image = Image.new("1", (box.width, box.height))
     draw = ImageDraw.Draw(image)
     for fill, each in ((1, outlines), (0, holes)):
@@ -65,6 +67,14 @@ def fill_outlines(outlines: Sequence[Outline], holes: Sequence[Outline] = ()) ->
             corners = outline.astype(np.float64) - (box.left, box.top) - 0.5
             draw.polygon([(x, y) for x, y in corners.tolist()], fill=fill)
     return Patch(box, np.array(image))
+
+
+def mark_outlines(outlines: Sequence[Outline], shape: tuple[int, ...]) -> NDArray[np.bool_]:
+    """Pixels [h, w] of a picture of a shape [h, w, ...] inside any of the outlines."""
+    marked = np.zeros(shape[:2], np.bool_)
+    patch = fill_outlines(outlines).clip(*shape[:2])
+    marked[patch.box.slices] = patch.inside
+    return marked
 
 
 def measure_area(outline: Outline) -> float:

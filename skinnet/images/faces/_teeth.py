@@ -3,14 +3,11 @@
 import numpy as np
 from numpy.typing import NDArray
 
+from skinnet.images.faces._mesh_outlines import INNER_LIPS
 from skinnet.images.faces._near_white import select_near_white
 from skinnet.images.faces._outlines import Patch, fill_outlines, measure_area, measure_depth
 from skinnet.images.faces._skin_reference import Colours
 
-_INNER_LIPS = (
-    *(78, 95, 88, 178, 87, 14, 317, 402, 318, 324),
-    *(308, 415, 310, 311, 312, 13, 82, 81, 80, 191),
-)
 _OPPOSITE = 10
 """Place of the other corner of the mouth in the inner lips."""
 
@@ -39,7 +36,7 @@ def locate_teeth(
     Returns:
         Their pixels, if the mouth is open and at least 24 pixels wide.
     """
-    lips = landmarks[list(_INNER_LIPS)].astype(np.float64)
+    lips = landmarks[list(INNER_LIPS)].astype(np.float64)
     width = float(np.linalg.norm(lips[_OPPOSITE] - lips[0]))
     if width < _LEAST_WIDTH or abs(measure_area(lips)) < _LEAST_OPENING * width**2:
         return []

@@ -53,6 +53,11 @@ class TurnedSquare(NamedTuple):
         matrix = self.matrix(size)
         return np.asarray(points @ matrix[:, :2].T + matrix[:, 2])
 
+    @property
+    def corners(self) -> NDArray[np.float64]:
+        """Columns and rows [4, 2] of its corners in the photograph, one after the other."""
+        return self.place(np.array([[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0]]), 1)
+
     def matrix(self, size: int) -> NDArray[np.float64]:
         """The affine matrix [2, 3] from the cut square of `size` pixels to the photograph."""
         scale = self.side / size

@@ -5,7 +5,7 @@ import pytest
 from PIL import Image, ImageDraw
 
 from skinnet.images import Box, Face, frame_head
-from skinnet.inference._head_crop import HeadCrop, crop_head, crop_patch, place_face
+from skinnet.inference._head_crop import HeadCrop, crop_head, crop_patch, place_face_in_cut
 from skinnet.inference.onnx_model import MAP_NAMES
 
 SIZE = 160
@@ -91,7 +91,7 @@ def test_an_edit_fades_at_sides_inside_the_photograph_only() -> None:
 
 
 def test_the_face_is_where_the_cut_has_it() -> None:
-    box = place_face(200)
+    box = place_face_in_cut(200)
     assert box == Box(50, 55, 150, 155)
     crop = crop_head(make_face(90.0), (400, 400))
     assert crop.square is not None

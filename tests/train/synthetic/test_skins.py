@@ -109,7 +109,7 @@ def test_portraits_features_come_to_the_charts(shared_data: Path) -> None:
     files = sorted((shared_data / "faces" / "london").glob("*.tem"))
     if not files:
         pytest.skip("There are no portraits in ../shared/data/faces/london.")
-    mean = london.average_points([london.read_points(file) for file in files[::9]])
+    mean = london.average_points([london.read_template(file) for file in files[::9]])
     place = london.find_places(mean)
     for (right, left), (azimuth, elevation) in london.PLACES:
         for number, side in ((right, -azimuth), (left, azimuth)):

@@ -3,8 +3,9 @@ import pytest
 from face_drawings import RED, SKIN, WHITE, draw_mouth, place_landmarks
 from PIL import Image
 
+from skinnet.images.faces._mesh_outlines import INNER_LIPS
 from skinnet.images.faces._skin_reference import measure_colours
-from skinnet.images.faces._teeth import _INNER_LIPS, locate_teeth
+from skinnet.images.faces._teeth import locate_teeth
 
 SKIN_COLOUR = measure_colours(np.array([[SKIN]], np.uint8)).reduce()
 
@@ -33,7 +34,7 @@ def test_a_mouth_without_teeth_has_none(colour: tuple[int, ...]) -> None:
 def test_a_closed_mouth_has_no_teeth() -> None:
     landmarks = place_landmarks()
     photo = draw_mouth(landmarks)
-    lips = list(_INNER_LIPS)
+    lips = list(INNER_LIPS)
     landmarks[lips, 1] = 300 + 0.1 * (landmarks[lips, 1] - 300)
     assert not find_teeth(photo, landmarks).any()
 
