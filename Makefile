@@ -51,6 +51,7 @@ bench: $(READY)
 	$(BIN)/python -m benchmarks.faces
 	$(BIN)/python -m benchmarks.full_resolution
 	$(BIN)/python -m benchmarks.encoder
+	$(BIN)/python -m benchmarks.constancy
 	$(BIN)/python -m benchmarks.identifiability
 
 wheel: $(READY)

@@ -86,7 +86,7 @@ def step(
 ) -> tuple[Tensor, ...]:
     """Run forward and backward; return the gradients of the maps and of the capture."""
     f_mel, f_blood, capture = scene
-    inputs = [value.detach().requires_grad_() for value in (f_mel, f_blood, *capture)]
+    inputs = [value.detach().requires_grad_() for value in (f_mel, f_blood, *capture[:4])]
     image = picture(inputs[0], inputs[1], Capture(*inputs[2:]))
     return torch.autograd.grad(image, inputs, weight)
 
@@ -134,11 +134,11 @@ def sample_square(size: int) -> tuple[Tensor, Tensor, Capture]:
 def measure_gradient_error(preset: str, size: int) -> float:
     """Measure the largest relative error of the fast mode's gradients, at any pixel."""
     f_mel, f_blood, capture = sample_square(size)
-    double = f_mel.double(), f_blood.double(), Capture(*(value.double() for value in capture))
+    double = f_mel.double(), f_blood.double(), capture.map(torch.Tensor.double)
     fast = differentiate(SkinDecoder(preset), (f_mel, f_blood, capture))
     exact = differentiate(SkinDecoder(preset, fast=False, dtype=torch.float64), double)
     # Maps [channel, ...] have one vector for each pixel; the capture's gradients are one vector.
-    axes = [(0,), (0,), *[None] * len(capture)]
+    axes = [(0,), (0,), *[None] * (len(fast) - 2)]
     norm = torch.linalg.vector_norm
     return max(
         (norm(ours - true, dim=axis) / norm(true, dim=axis)).max().item()

@@ -6,10 +6,12 @@ The photographs are scikit-image's astronaut, enlarged, with grain: `portrait` i
 `close_up` a crop that the head fills, of which all pixels are decomposed. Each figure comes from
 its own process: the shorter of two runs with loaded models, and the highest resident memory.
 `cpu_seconds` are the sum over threads, which other programs disturb less than seconds. `from_jpeg`
-includes the decoding of the file.
+includes the decoding of the file; `command` is `skinnet predict`, once, from its start until all
+files are written.
 """
 
 import json
+import os
 import resource
 import subprocess
 import sys
@@ -59,6 +61,7 @@ def _measure_picture(folder: Path, name: str) -> dict[str, Any]:
         "full_resolution": full,
         "from_jpeg": _run_process(folder / f"{name}.jpg", detail=True),
         "network_alone": soft,
+        "command": _run_command(folder / f"{name}.jpg"),
         "ratio": full["cpu_seconds"] / soft["cpu_seconds"],
     }
 
@@ -68,6 +71,23 @@ def _run_process(path: Path, detail: bool) -> dict[str, float]:
     done = subprocess.run(command, check=True, capture_output=True, text=True)
     figures: dict[str, float] = json.loads(done.stdout)
     return figures
+
+
+def _run_command(path: Path) -> dict[str, float]:
+    """Run `skinnet predict` from start to end, with all files that it writes."""
+    region = "skin" if path.stem == "close_up" else "face"
+    command = [sys.executable, "-m", "skinnet", "predict", str(path), "--region", region]
+    started = time.perf_counter()
+    process = subprocess.Popen(command, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
+    _, status, usage = os.wait4(process.pid, 0)
+    process.returncode = os.waitstatus_to_exitcode(status)
+    if process.returncode:
+        raise RuntimeError(f"{' '.join(command)} ended with {process.returncode}.")
+    return {
+        "seconds": time.perf_counter() - started,
+        "cpu_seconds": usage.ru_utime + usage.ru_stime,
+        "peak_mib": usage.ru_maxrss / 1024,
+    }
 
 
 def _decompose(path: Path, detail: bool) -> dict[str, float]:

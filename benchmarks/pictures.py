@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 from torch import Tensor
 
 from benchmarks.typology import compute_typology_angle
-from skinnet.physics import SkinDecoder
+from skinnet.physics import Capture, SkinDecoder
 from train.batch import Batch
 
 
@@ -25,6 +25,8 @@ class Pixels(NamedTuple):
         colour: Linear sRGB of the photograph, [pixels, 3].
         mask: Where the pictures show skin, [pictures, height, width].
         explained: Linear sRGB of the photograph without an offset, [pixels, 3].
+        sd: Standard deviations of the logarithms of melanin and hemoglobin, [pixels, 2].
+        face_sd: Those of their means over each picture, [pictures, 2].
     """
 
     melanin: Tensor
@@ -35,6 +37,8 @@ class Pixels(NamedTuple):
     colour: Tensor | None
     mask: Tensor | None
     explained: Tensor | None = None
+    sd: Tensor | None = None
+    face_sd: Tensor | None = None
 
 
 class Pictures(NamedTuple):
@@ -45,12 +49,14 @@ class Pictures(NamedTuple):
         truth: True values of the pixels of skin.
         picture: Number of the picture of each pixel, [pixels].
         angle: Typology angle of the mean true skin under D65 and the mean camera, [pictures].
+        known: White balance, light and camera of each picture; None where they are not kept.
     """
 
     photographs: NDArray[np.uint8]
     truth: Pixels
     picture: Tensor
     angle: Tensor
+    known: Capture | None = None
 
     @property
     def skin(self) -> Tensor:
@@ -74,7 +80,13 @@ def collect_pictures(batch: Batch, decoder: SkinDecoder) -> Pictures:
     eight_bits = (255 * batch.photograph).round().to(torch.uint8).movedim(1, -1).contiguous()
     colour = render_under_daylight(truth.melanin, truth.hemoglobin, decoder)
     angle = compute_typology_angle(average_by_picture(colour, picture, len(skin)))
-    return Pictures(eight_bits.numpy(), truth, picture, angle)
+    return Pictures(eight_bits.numpy(), truth, picture, angle, find_known(batch))
+
+
+def find_known(batch: Batch) -> Capture:
+    """Find what a careful user knows of each capture: balance, light, camera, linear or not."""
+    assert batch.capture is not None
+    return batch.capture._replace(exposure=None)
 
 
 def select_skin(values: Tensor, skin: Tensor) -> Tensor:

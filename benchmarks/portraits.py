@@ -222,11 +222,16 @@ def group_by_tone(measured: list[tuple[Portrait, list[float]]], decoder: SkinDec
     return found
 
 
+def measure_wall_reflectance(some: Sequence[Portrait]) -> float:
+    """Measure the median luminance of walls, which is taken for the reflectance of the wall."""
+    return float(np.median(np.stack([one.wall for one in some]) @ LUMINANCE_WEIGHTS))
+
+
 def compute_wall_angles(some: Sequence[Portrait]) -> torch.Tensor:
     """Compute typology angles [portraits] in degrees, relative to the wall.
 
     The light of each portrait is divided by that of its wall; the median luminance of walls stays.
     """
     walls, colours = (np.stack([getattr(one, name) for one in some]) for name in ("wall", "colour"))
-    grey = np.median(walls @ LUMINANCE_WEIGHTS)
+    grey = measure_wall_reflectance(some)
     return compute_typology_angle(torch.from_numpy(colours / walls * grey))

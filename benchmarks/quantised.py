@@ -29,7 +29,14 @@ from skimage.data import astronaut
 
 from benchmarks.report import Results, main
 from export.quantisation import halve, quantise_dynamically, quantise_statically
-from skinnet.inference import SHIPPED_ENCODER, Decomposer, OnnxModel, open_model
+from skinnet.inference import (
+    CAPTURE_NAMES,
+    MAP_NAMES,
+    SHIPPED_ENCODER,
+    Decomposer,
+    OnnxModel,
+    open_model,
+)
 from skinnet.inference._onnx_pair import get_decoder_path
 from train.batch import Batch
 from train.synthetic.faces import SyntheticFaces
@@ -55,13 +62,13 @@ class Faces(NamedTuple):
 
 
 def render_faces(geometry: Path, split: str, heads: int, count: int) -> Faces:
-    """Render faces of the validation or the test split."""
+    """Render faces of the validation or the test split, in the shipped model's preset."""
     data = SyntheticFaces(
         SIZE,
         BATCH,
         **{f"{split}_heads": heads, f"{split}_samples": count},
         geometry=str(geometry),
-        optics="calibrated",
+        optics=open_model(SHIPPED_ENCODER, "encoder").optics,
     )
     data.setup({"val": "validate", "test": "test"}[split])
     loader = {"val": data.val_dataloader, "test": data.test_dataloader}[split]()
@@ -107,7 +114,7 @@ def run_all(model: OnnxModel, feeds: list[Arrays]) -> list[Arrays]:
 
 
 def _decoder_inputs(outputs: Arrays) -> Arrays:
-    return {name: value for name, value in outputs.items() if name != "mask"}
+    return {name: outputs[name] for name in (*MAP_NAMES, *CAPTURE_NAMES)}
 
 
 def time_all(models: Mapping[str, OnnxModel], feed: Arrays, rounds: int) -> Results:

@@ -11,7 +11,7 @@ from torch import Tensor
 
 from benchmarks.pictures import Pictures, Pixels, select_skin
 from skinnet.images import resize
-from skinnet.network.autoencoder import SkinAutoencoder, SkinMaps
+from skinnet.network.autoencoder import SkinAutoencoder, SkinMaps, Uncertainty
 from skinnet.physics import Capture, SkinDecoder
 
 LEAST_SIDE = 16
@@ -26,24 +26,37 @@ class NetworkReader:
     def __init__(self, model: SkinAutoencoder) -> None:
         self.model = model.eval()
 
-    @torch.no_grad()
     def __call__(self, photograph: NDArray[np.uint8]) -> tuple[SkinMaps, Capture]:
         """Read a photograph."""
+        return self.read(photograph)[:2]
+
+    @torch.no_grad()
+    def read(
+        self, photograph: NDArray[np.uint8], known: Capture | None = None
+    ) -> tuple[SkinMaps, Capture, Uncertainty]:
+        """Read a photograph, given what is known of its capture [1]."""
         height, width = photograph.shape[:2]
         scale = self.model.config.working_size / max(height, width)
         sides = (max(LEAST_SIDE, round(side * scale)) for side in (width, height))
         small = torch.from_numpy(resize(photograph, *sides)).movedim(-1, 0)[None]
-        maps, capture = self.model.encode(small.float() / 255)
-        return resize_maps(maps, height, width), capture
+        maps, capture, sd = self.model.encode(small.float() / 255, known)
+        pixel = resize_channels(torch.stack([sd.melanin, sd.hemoglobin], 1), height, width)
+        return resize_maps(maps, height, width), capture, Uncertainty(*pixel.unbind(1), sd.face)
 
 
 def resize_maps(maps: SkinMaps, height: int, width: int) -> SkinMaps:
     """Resize maps: bilinear, and averaged where they shrink."""
     channels = torch.cat([one if one.ndim == 4 else one[:, None] for one in maps], 1)
-    if channels.shape[-2:] != (height, width):
-        channels = F.interpolate(channels, (height, width), mode="bilinear", antialias=True)
+    channels = resize_channels(channels, height, width)
     melanin, hemoglobin, shading, specular, *offset, mask = channels.unbind(1)
     return SkinMaps(melanin, hemoglobin, shading, specular, torch.stack(offset, 1), mask)
+
+
+def resize_channels(channels: Tensor, height: int, width: int) -> Tensor:
+    """Resize channels [1, channels, h, w] as maps are."""
+    if channels.shape[-2:] == (height, width):
+        return channels
+    return F.interpolate(channels, (height, width), mode="bilinear", antialias=True)
 
 
 class Composition(NamedTuple):
@@ -71,22 +84,35 @@ def compose(maps: SkinMaps, capture: Capture, decoder: SkinDecoder) -> Compositi
 
 
 class Encoder:
-    """A row of the table: synthetic faces, read one by one."""
+    """A row of the table: synthetic faces, read one by one.
 
-    def __init__(self, reader: Reader, decoder: SkinDecoder) -> None:
-        self.reader, self.decoder = reader, decoder
+    Args:
+        reader: Reads each photograph.
+        told: Whether it is given the white balance, the light and the camera.
+    """
+
+    def __init__(self, reader: NetworkReader, told: bool = False) -> None:
+        self.reader, self.told = reader, told
 
     def __call__(self, pictures: Pictures) -> Pixels:
         """Predict by reading every picture."""
-        pairs = zip(pictures.photographs, pictures.skin, strict=True)
-        parts = [self._read(photograph, skin[None]) for photograph, skin in pairs]
+        parts = [self._read(pictures, number) for number in range(len(pictures.photographs))]
         return Pixels(*(torch.cat(values) for values in zip(*parts, strict=True)))
 
     @torch.no_grad()
-    def _read(self, photograph: NDArray[np.uint8], skin: Tensor) -> Pixels:
-        maps, capture = self.reader(photograph)
-        composition = compose(maps, capture, self.decoder)
+    def _read(self, pictures: Pictures, number: int) -> Pixels:
+        row = slice(number, number + 1)
+        skin = pictures.skin[row]
+        known = pictures.known.map(lambda value: value[row]) if self.told else None
+        maps, capture, sd = self.reader.read(pictures.photographs[number], known)
+        composition = compose(maps, capture, self.reader.model.decoder)
         values = [
             select_skin(one, skin) for one in (*maps[:4], composition.albedo, composition.image)
         ]
-        return Pixels(*values, maps.mask > 0.5, select_skin(composition.explained, skin))
+        return Pixels(
+            *values,
+            maps.mask > 0.5,
+            select_skin(composition.explained, skin),
+            torch.stack([select_skin(one, skin) for one in sd[:2]], 1),
+            sd.face,
+        )

@@ -5,6 +5,7 @@ from typing import Any
 import torch
 from torch import Tensor
 
+from benchmarks.coverage import Coverage
 from benchmarks.pictures import Pictures, Pixels, average_by_picture
 from benchmarks.running_statistics import RunningStatistics
 from benchmarks.typology import GROUPS, find_group
@@ -33,6 +34,7 @@ class Scores:
         self.groups = {name: RunningStatistics() for name in GROUPS}
         self.pictures = dict.fromkeys(GROUPS, 0)
         self.error_and_shading, self.explained = RunningStatistics(), RunningStatistics()
+        self.coverage = Coverage()
         self.iou_sums: Tensor | None = torch.zeros(2, dtype=torch.float64)
 
     def add(self, guess: Pixels, pictures: Pictures) -> None:
@@ -54,6 +56,7 @@ class Scores:
             self.explained.add(guess.explained, truth.colour)
         assert truth.shading is not None
         self.error_and_shading.add(guess.melanin - truth.melanin, truth.shading)
+        self.coverage.add(guess, pictures)
         self._add_groups(guess, pictures)
         self._add_mask(guess.mask, pictures.skin)
 

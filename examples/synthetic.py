@@ -1,7 +1,7 @@
 """A contact sheet of 48 pictures of the synthetic renderer, and one of their masks of skin.
 
-    python -m examples.synthetic [--variety mild] [--ict ict_facekit.npz] [--beside PHOTOS]
-        [-o runs/synthetic.png]
+    python -m examples.synthetic [--variety mild] [--captures wide] [--ict ict_facekit.npz]
+        [--beside PHOTOS] [-o runs/synthetic.png]
 
 The pictures are the first of the validation set. The second sheet, whose name ends in _mask,
 tints the true skin green. With a folder of photographs, a column of their faces stands beside the
@@ -22,7 +22,7 @@ from skinnet.images import to_uint8
 from train.batch import Batch
 from train.portraits import find_crops
 from train.synthetic.faces import SyntheticFaces
-from train.synthetic.variety import Variety
+from train.synthetic.variety import Captures, Variety
 
 TARGET = Path("runs/synthetic.png")
 SIDE, ACROSS, DOWN = 160, 8, 6
@@ -35,7 +35,9 @@ TINT_SHARE = 0.5
 Picture = NDArray[np.uint8]
 
 
-def render_batches(variety: Variety, ict: str | None, geometry: str) -> list[Batch]:
+def render_batches(
+    variety: Variety, captures: Captures, ict: str | None, geometry: str
+) -> list[Batch]:
     """Render the first 48 pictures of the validation set."""
     count = ACROSS * DOWN
     data = SyntheticFaces(
@@ -46,6 +48,7 @@ def render_batches(variety: Variety, ict: str | None, geometry: str) -> list[Bat
         ict=ict,
         geometry=geometry,
         variety=variety,
+        captures=captures,
     )
     data.setup("validate")
     return [data.render(scenes, "val") for scenes in data.val_dataloader()]
@@ -85,7 +88,7 @@ def draw(options: argparse.Namespace) -> None:
     check_picture(options.output, TARGET, "synthetic")
     check_picture(mask, TARGET.with_stem(f"{TARGET.stem}_mask"), "synthetic")
     column = None if options.beside is None else find_faces(options.beside)
-    batches = render_batches(options.variety, options.ict, options.geometry)
+    batches = render_batches(options.variety, options.captures, options.ict, options.geometry)
     for path, tinted in ((options.output, False), (mask, True)):
         pictures = [one for batch in batches for one in list_pictures(batch, tinted)]
         sheet = tile(pictures, ACROSS)
@@ -100,6 +103,7 @@ def main(arguments: list[str] | None = None) -> int:
         description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter
     )
     parser.add_argument("--variety", choices=get_args(Variety), default="any")
+    parser.add_argument("--captures", choices=get_args(Captures), default="mild")
     parser.add_argument("--ict", help="ICT-FaceKit's model as an .npz")
     parser.add_argument("--beside", type=Path, help="folder of photographs of faces")
     parser.add_argument("--geometry", default="runs/geometry", help="where heads are kept")

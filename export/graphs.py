@@ -5,6 +5,7 @@ from typing import Any
 import torch
 from torch import Tensor, nn
 
+from skinnet.inference import CAPTURE_NAMES, MAP_NAMES
 from skinnet.network import (
     CAMERA_MAX,
     F_BLOOD_MAX,
@@ -13,7 +14,8 @@ from skinnet.network import (
     WHITE_BALANCE_MAX,
     SkinAutoencoder,
 )
-from skinnet.physics import Capture, SkinDecoder, to_display
+from skinnet.network.autoencoder import LOG_SD_RANGE
+from skinnet.physics import CAMERA_COMPONENTS, LIGHTS, Capture, SkinDecoder, to_display
 
 Output = dict[str, Any]
 
@@ -35,23 +37,53 @@ OUTPUTS: dict[str, Output] = {
     "white_balance": _output(
         "natural logarithm", -WHITE_BALANCE_MAX, WHITE_BALANCE_MAX, "error in R/G and in B/G"
     ),
+    "melanin_sd": _output("natural logarithm", *LOG_SD_RANGE, "standard deviation of a pixel"),
+    "hemoglobin_sd": _output("natural logarithm", *LOG_SD_RANGE, "standard deviation of a pixel"),
+    "face_sd": _output(
+        *("natural logarithm", *LOG_SD_RANGE),
+        "standard deviations of the means of melanin and hemoglobin over the skin",
+    ),
 }
 DECODED: dict[str, Output] = {
     "image": _output("display sRGB", 0, 1, "the photograph that the maps make")
 }
+KNOWN: dict[str, tuple[int, ...]] = {
+    "known_light": (len(LIGHTS),),
+    "known_temperature": (),
+    "known_camera": (CAMERA_COMPONENTS,),
+    "known_white_balance": (2,),
+    "known_linear": (),
+    "known_exposure": (),
+}
+"""Optional inputs of the encoder in the order of `Capture`, and their shapes after the batch."""
 
 
 class EncoderGraph(nn.Module):
-    """Computes the ten `OUTPUTS`, channels last, from uint8 sRGB [batch, height, width, 3]."""
+    """Computes the `OUTPUTS`, channels last, from uint8 sRGB [batch, height, width, 3].
+
+    What is `KNOWN` of each capture is NaN where it is not known.
+    """
 
     def __init__(self, model: SkinAutoencoder) -> None:
         super().__init__()
         self.model = model
 
-    def forward(self, image: Tensor) -> tuple[Tensor, ...]:
+    def forward(
+        self, image: Tensor, known_light: Tensor, known_temperature: Tensor,
+        known_camera: Tensor, known_white_balance: Tensor, known_linear: Tensor,
+        known_exposure: Tensor,
+    ) -> tuple[Tensor, ...]:  # fmt: skip
         """Compute the outputs."""
-        maps, capture = self.model.encode(image.movedim(-1, 1).float() / 255)
-        named = {**maps._asdict(), **capture._asdict(), "offset": maps.offset.movedim(1, -1)}
+        known = Capture(
+            *(known_light, known_temperature, known_camera, known_white_balance),
+            *(known_linear, known_exposure),
+        )
+        maps, capture, uncertainty = self.model.encode(image.movedim(-1, 1).float() / 255, known)
+        named = {
+            **{**maps._asdict(), "offset": maps.offset.movedim(1, -1)},
+            **capture._asdict(),
+            **{f"{name}_sd": value for name, value in uncertainty._asdict().items()},
+        }
         return tuple(named[name] for name in OUTPUTS)
 
 
@@ -72,7 +104,37 @@ class DecoderGraph(nn.Module):
         return to_display(self.decoder.compose(*maps, capture)).movedim(1, -1)
 
 
+def describe_outputs(model: SkinAutoencoder) -> dict[str, Output]:
+    """Describe the encoder's outputs, with the ranges of this model's standard deviations."""
+    (melanin, hemoglobin), face = model.sd_scale.tolist()
+    scales = {"melanin_sd": [melanin], "hemoglobin_sd": [hemoglobin], "face_sd": face}
+    low, high = LOG_SD_RANGE
+    ranges = {name: [low * min(each), high * max(each)] for name, each in scales.items()}
+    return OUTPUTS | {name: OUTPUTS[name] | {"range": ends} for name, ends in ranges.items()}
+
+
+def select_decoder_inputs(outputs: dict[str, Tensor]) -> dict[str, Tensor]:
+    """Select the encoder's outputs that are inputs of the decoder."""
+    return {name: outputs[name] for name in (*MAP_NAMES, *CAPTURE_NAMES)}
+
+
 def make_example(batch: int, height: int, width: int) -> Tensor:
     """Generate random photographs of a size, the same on every run."""
     rng = torch.Generator().manual_seed(height * 10_000 + width)
     return torch.randint(0, 256, (batch, height, width, 3), generator=rng, dtype=torch.uint8)
+
+
+def make_known(batch: int, is_known: bool = True) -> dict[str, Tensor]:
+    """Generate what is known of captures: random values, the same on every run, or nothing."""
+    shapes = {name: (batch, *shape) for name, shape in KNOWN.items()}
+    if not is_known:
+        return {name: torch.full(shape, torch.nan) for name, shape in shapes.items()}
+    rng = torch.Generator().manual_seed(batch)
+    values = {name: torch.rand(shape, generator=rng) for name, shape in shapes.items()}
+    light = values["known_light"]
+    return values | {
+        "known_light": light / light.sum(-1, keepdim=True),
+        "known_temperature": 4000 + 21000 * values["known_temperature"],
+        "known_white_balance": values["known_white_balance"] - 0.5,
+        "known_linear": values["known_linear"].round(),
+    }

@@ -7,6 +7,7 @@ import warnings
 from collections.abc import Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass
+from itertools import product
 from pathlib import Path
 
 import numpy as np
@@ -16,8 +17,20 @@ import torch
 from torch import Tensor, nn
 from torch.export import Dim
 
-from export.graphs import DECODED, OUTPUTS, DecoderGraph, EncoderGraph, Output, make_example
+from export.graphs import (
+    DECODED,
+    KNOWN,
+    OUTPUTS,
+    DecoderGraph,
+    EncoderGraph,
+    Output,
+    describe_outputs,
+    make_example,
+    make_known,
+    select_decoder_inputs,
+)
 from export.onnx_graph import finish
+from export.optional_inputs import make_optional
 from skinnet._version import __version__
 from skinnet.errors import InputError
 from skinnet.files import write_together
@@ -75,12 +88,12 @@ def export_model(
         # Rounded before any file is written, so that all files hold the same weights. The
         # constants of the physics need float32.
         model.encoder.half().float()
-    photograph = make_example(2, 64, 80)
-    maps = EncoderGraph(model)(photograph)
-    decoder_inputs = {k: v for k, v in zip(OUTPUTS, maps, strict=True) if k != "mask"}
+    inputs = {"image": make_example(2, 64, 80), **make_known(2)}
+    maps = dict(zip(OUTPUTS, EncoderGraph(model)(**inputs), strict=True))
+    maps = select_decoder_inputs(maps)
     jobs = [
-        ("encoder", EncoderGraph(model), {"image": photograph}, OUTPUTS, path),
-        ("decoder", DecoderGraph(model.decoder), decoder_inputs, DECODED, get_decoder_path(path)),
+        ("encoder", EncoderGraph(model), inputs, describe_outputs(model), path),
+        ("decoder", DecoderGraph(model.decoder), maps, DECODED, get_decoder_path(path)),
     ]
     with write_together() as temporary:
         reports = []
@@ -88,7 +101,7 @@ def export_model(
             part = temporary(target)
             _write(graph, inputs, outputs, part)
             _describe(part, kind, model, outputs, origin)
-            reports.append(_compare(model, part, target))
+            reports.append(_compare(model, part, target, outputs))
         if half:
             model.encoder.half()
         model.save_pretrained(temporary(path.with_suffix(".safetensors")))
@@ -147,11 +160,14 @@ def _describe(
         "skinnet.lights": json.dumps(LIGHTS),
         "skinnet.optics": model.config.optics,
         "skinnet.working_size": str(model.config.working_size),
+        "skinnet.region_share": json.dumps(model.region_share.tolist()),
         "skinnet.trained_on": model.trained_on,
         "skinnet.license": LICENSE,
     }
     onnx.helper.set_model_props(file, metadata)
     file.doc_string = origin
+    if kind == "encoder":
+        make_optional(file.graph, KNOWN, "image")
     try:
         finish(file)
     except (onnx.checker.ValidationError, onnx.shape_inference.InferenceError) as error:
@@ -162,13 +178,16 @@ def _describe(
     onnx.save(file, path)
 
 
-def _compare(model: SkinAutoencoder, part: Path, target: Path) -> Report:
+def _compare(
+    model: SkinAutoencoder, part: Path, target: Path, outputs: dict[str, Output]
+) -> Report:
+    """Compare a file with torch, at all sizes, with nothing known of a capture and everything."""
     options = onnxruntime.SessionOptions()
+    options.log_severity_level = 3  # inputs with a default value are warned of
     session = onnxruntime.InferenceSession(part, options, providers=["CPUExecutionProvider"])
-    outputs = OUTPUTS if len(session.get_inputs()) == 1 else DECODED
     worst = dict.fromkeys(outputs, 0.0)
-    for size in SIZES:
-        found, expected, elapsed = _run_both(model, session, size)
+    for size, is_known in product(SIZES, (False, True)):
+        found, expected, elapsed = _run_both(model, session, size, is_known)
         for name, a, b in zip(outputs, found, expected, strict=True):
             low, high = outputs[name]["range"]
             worst[name] = max(worst[name], float(np.abs(a - b).max()) / (high - low))
@@ -183,15 +202,18 @@ def _compare(model: SkinAutoencoder, part: Path, target: Path) -> Report:
 
 @torch.no_grad()
 def _run_both(
-    model: SkinAutoencoder, session: onnxruntime.InferenceSession, size: tuple[int, int, int]
+    model: SkinAutoencoder,
+    session: onnxruntime.InferenceSession,
+    size: tuple[int, int, int],
+    is_known: bool,
 ) -> tuple[list[np.ndarray], list[np.ndarray], float]:
-    photograph = make_example(*size)
-    expected: tuple[Tensor, ...] = EncoderGraph(model)(photograph)
-    inputs = {"image": photograph}
+    inputs, known = {"image": make_example(*size)}, make_known(size[0], is_known)
+    expected: tuple[Tensor, ...] = EncoderGraph(model)(**inputs, **known)
     if len(session.get_inputs()) > 1:
-        named = dict(zip(OUTPUTS, expected, strict=True))
-        inputs = {name: value for name, value in named.items() if name != "mask"}
+        inputs = select_decoder_inputs(dict(zip(OUTPUTS, expected, strict=True)))
         expected = (DecoderGraph(model.decoder)(**inputs),)
+    elif is_known:
+        inputs |= known
     feed = {name: value.contiguous().numpy() for name, value in inputs.items()}
     started = time.perf_counter()
     found = session.run(None, feed)

@@ -23,8 +23,10 @@ def finish(model: ModelProto) -> None:
       soon as a tool replaces one, as `quantize_dynamic` does when it transposes weights.
     - The origins of nodes are removed: a quarter of a small file, with local paths.
     - What the symbolic shape inference of onnxruntime does not know, or takes wrongly, is written
-      in another way: a maximum over height and width, the ellipsis of an Einstein sum, and sizes
-      that are computed from the photograph's where a tensor of that size is at hand.
+      in another way: a maximum over height and width, whether any of some values is true, the
+      ellipsis of an Einstein sum, and sizes that are computed from the photograph's where a tensor
+      of that size is at hand.
+    - NaN is replaced by 0 in an operator that is not quantised, since NaN has no scale.
     - A factor above 10,000 becomes two, of which one is a power of two, so that products keep their
       bits. Conversion to half precision would clip it without a word.
 
@@ -81,6 +83,11 @@ def _rewrite(node: NodeProto, graph: GraphProto, shapes: Shapes) -> Iterator[Nod
     """The nodes that stand for one; most stand for themselves."""
     if node.op_type == "ReduceMax" and _is_pooling(node, graph, shapes):
         yield from _pool(node)
+    elif node.op_type == "ReduceMax" and _is_any(node, graph):
+        node.op_type = "ReduceSum"
+        yield node
+    elif node.op_type == "Where" and _is_fill(node, graph):
+        yield _fill(node)
     elif node.op_type == "Resize" and (model := _find_model(node, graph, shapes)):
         yield from _resize_as(node, model)
     elif node.op_type == "Mul" and (factor := _find_large_factor(node, graph)) is not None:
@@ -95,6 +102,33 @@ def _is_pooling(node: NodeProto, graph: GraphProto, shapes: Shapes) -> bool:
     """Whether a maximum is over height and width of [batch, channels, height, width]."""
     axes = [numpy_helper.to_array(one) for one in graph.initializer if one.name in node.input[1:]]
     return len(shapes.get(node.input[0], [])) == 4 and bool(axes) and sorted(axes[0] % 4) == [2, 3]
+
+
+def _is_any(node: NodeProto, graph: GraphProto) -> bool:
+    """Whether a maximum is over truth values as integers, and a truth value again."""
+    made = {name: one for one in graph.node for name in one.output}
+    before = made.get(node.input[0])
+    after = [one for one in graph.node if node.output[0] in one.input]
+    to = [attribute.i for one in after for attribute in one.attribute if attribute.name == "to"]
+    if before is None or before.op_type != "Cast" or to != [TensorProto.BOOL]:
+        return False
+    source = made.get(before.input[0])
+    return source is not None and source.op_type in ("IsNaN", "Not")
+
+
+def _is_fill(node: NodeProto, graph: GraphProto) -> bool:
+    """Whether a choice is of 0 where the other value is NaN."""
+    condition, zero, value = node.input
+    zeros = (one for one in graph.initializer if one.name == zero)
+    is_zero = any(not numpy_helper.to_array(one).any() for one in zeros)
+    tests = [one for one in graph.node if one.op_type == "IsNaN" and one.output[0] == condition]
+    return is_zero and [one.input[0] for one in tests] == [value]
+
+
+def _fill(node: NodeProto) -> NodeProto:
+    # It is x where x > alpha, which NaN is not, and 0 elsewhere.
+    lowest = float(np.finfo(np.float32).min)
+    return helper.make_node("ThresholdedRelu", node.input[2:], node.output, node.name, alpha=lowest)
 
 
 def _pool(node: NodeProto) -> Iterator[NodeProto]:

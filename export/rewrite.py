@@ -19,7 +19,7 @@ from skimage.data import astronaut
 from export.onnx_graph import finish
 from skinnet.errors import InputError
 from skinnet.files import write_together
-from skinnet.inference import SHIPPED_ENCODER, open_model
+from skinnet.inference import CAPTURE_NAMES, MAP_NAMES, SHIPPED_ENCODER, open_model
 from skinnet.inference._onnx_pair import get_decoder_path
 
 CROPS = (np.s_[:200:2, 120:300:2], np.s_[::3, ::3], np.s_[:161, 140:301], np.s_[100:133, 200:237])
@@ -59,7 +59,8 @@ def _rewrite_one(path: Path, part: Path, feeds: list[Arrays]) -> list[Arrays]:
     for old, new in zip(before, after, strict=True):
         if not all(np.array_equal(old[name], new[name], equal_nan=True) for name in old):
             raise InputError(f"{path} would change its outputs; it was left as it is.")
-    return [{name: value for name, value in one.items() if name != "mask"} for one in before]
+    names = (*MAP_NAMES, *CAPTURE_NAMES)
+    return [{name: one[name] for name in names if name in one} for one in before]
 
 
 def _run(path: Path, feeds: list[Arrays]) -> list[Arrays]:

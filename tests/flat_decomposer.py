@@ -15,6 +15,7 @@ from skinnet.errors import NoFaceError
 from skinnet.images import Box
 from skinnet.images._png_file import write_png
 from skinnet.images.picture import Picture
+from skinnet.inference._uncertainty import Uncertainty
 from skinnet.inference.decomposer import Decomposer
 from skinnet.inference.decomposition import Decomposition
 from skinnet.inference.onnx_model import OutputInfo
@@ -60,6 +61,7 @@ class FlatDecomposer(Decomposer):
             box=Box(0, 0, width, height),
             output_info=INFO,
             model={"version": "0"},
+            uncertainty=Uncertainty(flat, flat, (0.1, 0.2), (1.0, 1.0)),
             colour_space=picture.colour_space,
             notes=picture.notes,
             faces_found=count,

@@ -13,6 +13,7 @@ from numpy.typing import NDArray
 from skimage.data import astronaut
 
 from skinnet.inference import CAPTURE_NAMES, MAP_NAMES, SHIPPED_ENCODER, open_model
+from skinnet.inference.onnx_model import _SD_NAMES
 
 GOLDEN_FILE = Path(__file__).parents[1] / "tests" / "golden.json"
 PIXELS = ((20, 30), (45, 38), (50, 52), (60, 45), (66, 50), (90, 20))
@@ -28,11 +29,12 @@ def load_photograph() -> NDArray[np.uint8]:
 def summarise_outputs(outputs: Mapping[str, NDArray[np.float32]]) -> dict[str, list[float]]:
     """Summarise maps by mean, deviation and some pixels; give light and camera in full."""
     summary = {}
-    for name in (*MAP_NAMES, "mask"):
+    for name in (*MAP_NAMES, "mask", *_SD_NAMES):
         value = outputs[name][0].astype(np.float64)
         pixels = np.ravel([value[pixel] for pixel in PIXELS])
         summary[name] = [float(value.mean()), float(value.std()), *map(float, pixels)]
-    return summary | {name: np.ravel(outputs[name]).tolist() for name in CAPTURE_NAMES}
+    whole = (*CAPTURE_NAMES, "face_sd")
+    return summary | {name: np.ravel(outputs[name]).tolist() for name in whole}
 
 
 def main() -> None:

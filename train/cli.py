@@ -27,13 +27,14 @@ from train.flags import check_flags, check_trainer, describe_no_step
 from train.guards import FiniteGuard
 from train.logs import CurveLogger, EventLogger
 from train.monitors import check_monitors, list_logged
+from train.pairs import PortraitPairs
 from train.portraits import Portraits
 from train.refusals import explain_refusals, find_guilty, list_given, write_refusal
 from train.run_folder import RunFolder, check_run_folder
 from train.synthetic.faces import SyntheticFaces
 from train.task import SkinTask
 
-__all__ = ["FittedFaces", "Portraits", "SkinCLI", "SyntheticFaces", "main"]
+__all__ = ["FittedFaces", "PortraitPairs", "Portraits", "SkinCLI", "SyntheticFaces", "main"]
 
 _RENAMED = {
     "model.losses.elsewhere": "model.losses.background_reconstruction",

@@ -159,4 +159,4 @@ def render_fitted(scene: FittedScene, decoder: SkinDecoder, split: str = "train"
     other = white * (expand_colour(scene.wall) * (1 - hit) + hit * 0.05 * shading.diffuse)
     skin = VisibleSkin(melanin, blood, decoder.albedo(melanin, blood, matrix), share, shading)
     rest = share * shading.diffuse * offset + (1 - share) * other
-    return develop(scene.camera, skin, rest, white, capture)
+    return develop(scene.camera, skin, rest, white, capture, decoder.camera)

@@ -10,14 +10,16 @@ from lightning.pytorch.callbacks import EarlyStopping, ModelCheckpoint
 from skinnet.errors import InputError
 from train.fitted import FittedFaces
 from train.metrics import PIGMENTS
+from train.pairs import PortraitPairs
 from train.portraits import Portraits
 from train.synthetic.faces import SyntheticFaces
 from train.task import KINDS, LossWeights
 
 _LOSSES = [field.name for field in fields(LossWeights)]
-_FIRST, _LAST = _LOSSES.index("mask"), _LOSSES.index("white_balance") + 1
+_FIRST, _LAST = _LOSSES.index("mask"), _LOSSES.index("uncertainty") + 1
 _WITH_TRUTH = _LOSSES[:_LAST]
-_WITHOUT_TRUTH = _LOSSES[:_FIRST] + _LOSSES[_LAST:]
+_OF_PEOPLE = ["agreement", "prediction", "agreement_uncertainty"]
+_WITHOUT_TRUTH = _LOSSES[:_FIRST] + [one for one in _LOSSES[_LAST:] if one not in _OF_PEOPLE]
 _METRICS = ["reconstruction", "mask_iou"]
 _PIGMENT_METRICS = [f"{name}{kind}" for name in PIGMENTS for kind in ("", "_r", "_constant")]
 
@@ -31,12 +33,14 @@ def list_logged(data: LightningDataModule) -> set[str] | None:
     Returns:
         The names; None for data of the user, which may be of any kind.
     """
-    if not isinstance(data, FittedFaces | Portraits | SyntheticFaces):
+    if not isinstance(data, FittedFaces | PortraitPairs | Portraits | SyntheticFaces):
         return None
     names = {"train/loss", "val/loss"}
     names |= {f"train/{KINDS[0]}_{loss}" for loss in _WITH_TRUTH}
     names |= {f"val/{KINDS[0]}_{metric}" for metric in _METRICS + _PIGMENT_METRICS}
-    if isinstance(data, Portraits):
+    if isinstance(data, PortraitPairs):
+        names |= {f"train/{KINDS[1]}_{loss}" for loss in _OF_PEOPLE}
+    if isinstance(data, Portraits | PortraitPairs):
         names |= {f"train/{KINDS[1]}_{loss}" for loss in _WITHOUT_TRUTH}
         names |= {f"val/{KINDS[1]}_{metric}" for metric in _METRICS}
     return names

@@ -14,9 +14,20 @@ from torch.optim import AdamW, Optimizer
 from torch.optim.lr_scheduler import LambdaLR
 
 from skinnet.errors import InputError
-from skinnet.network import AutoencoderConfig, Reading, SkinAutoencoder, SkinMaps, losses, priors
+from skinnet.network import (
+    AutoencoderConfig,
+    Reading,
+    SkinAutoencoder,
+    SkinMaps,
+    agreement,
+    losses,
+    priors,
+)
+from skinnet.network._earlier_weights import free_uncertainty
+from skinnet.network.autoencoder import Uncertainty
 from skinnet.physics import Capture
-from train.batch import Batch
+from train.batch import Batch, People
+from train.edited_skin import edit_skin, multiply_pigments
 from train.metrics import ReadingMetrics
 from train.refusals import count_steps
 
@@ -31,7 +42,7 @@ KINDS = ("synthetic", "portraits")
 class LossWeights:
     """Weight of each loss.
 
-    The first three losses apply to every picture. Those from `mask` to `white_balance` need truth.
+    The first three losses apply to every picture. Those from `mask` to `uncertainty` need truth.
     The others apply to pictures without truth.
 
     Attributes:
@@ -45,12 +56,16 @@ class LossWeights:
         error_shading_covariance: Covariance of melanin's error with shading.
         lighting: Shading and specular reflection.
         white_balance: White balance, L1.
+        uncertainty: Negative log likelihood of the pigments' errors.
         augmentation_consistency: Pigments under changes of exposure and white balance.
         mask_guess: Cross entropy with an estimated mask.
         camera: Prior of camera and white balance.
         specular: Sparsity of specular reflection.
         smoothness: Smoothness of shading.
         shading: Shading against the luminance of the photograph.
+        agreement: Pigments of the same regions in two photographs of a person.
+        prediction: Colour of a person in another photograph.
+        agreement_uncertainty: Negative log likelihood of the difference of two photographs.
     """
 
     appearance: NonNegativeFloat = 4.0
@@ -63,12 +78,16 @@ class LossWeights:
     error_shading_covariance: NonNegativeFloat = 3.0
     lighting: NonNegativeFloat = 1.0
     white_balance: NonNegativeFloat = 2.0
+    uncertainty: NonNegativeFloat = 0.3
     augmentation_consistency: NonNegativeFloat = 3.0
     mask_guess: NonNegativeFloat = 0.05
     camera: NonNegativeFloat = 0.005
     specular: NonNegativeFloat = 0.01
     smoothness: NonNegativeFloat = 0.02
     shading: NonNegativeFloat = 0.02
+    agreement: NonNegativeFloat = 1.0
+    prediction: NonNegativeFloat = 1.0
+    agreement_uncertainty: NonNegativeFloat = 0.1
 
 
 class SkinTask(LightningModule):
@@ -82,8 +101,10 @@ class SkinTask(LightningModule):
         learning_rate: Largest learning rate of AdamW, reached after the warm-up.
         weight_decay: Weight decay of AdamW.
         warmup_steps: Steps in which the learning rate rises; it then falls as a cosine to zero.
-        weights: A .safetensors file to start from (fine-tuning). To continue a run, use
-            --ckpt_path instead.
+        weights: A .safetensors file or a checkpoint to start from (fine-tuning). To continue a run,
+            use --ckpt_path instead.
+        other_preset: Whether the weights may belong to another preset, to which training then
+            adapts them.
     """
 
     def __init__(
@@ -96,6 +117,7 @@ class SkinTask(LightningModule):
         weight_decay: NonNegativeFloat = 1e-4,
         warmup_steps: NonNegativeInt = 50,
         weights: str | None = None,
+        other_preset: bool = False,
     ) -> None:
         super().__init__()
         self.model = SkinAutoencoder(
@@ -109,14 +131,21 @@ class SkinTask(LightningModule):
         self.learning_rate = float(learning_rate)
         self.weight_decay = float(weight_decay)
         self.warmup_steps = int(warmup_steps)
-        self.trained_on = "" if weights is None else f"{self._start_from(weights)}; then "
+        self.trained_on = ""
+        if weights is not None:
+            self.trained_on = f"{self._start_from(weights, other_preset)}; then "
+        # What the captures of photographs add to the colour of skin: mean and log spread.
+        shift, scale = torch.tensor([0.2, -0.05, -0.2]), torch.tensor([0.12, 0.15, 0.2])
+        self.captures = nn.ParameterDict({"shift": shift, "log_scale": scale.log()})
         self.metrics = nn.ModuleDict({kind: ReadingMetrics() for kind in KINDS})
 
-    def _start_from(self, path: str) -> str:
+    def _start_from(self, path: str, other_preset: bool) -> str:
         start = SkinAutoencoder.from_pretrained(path)
-        self._check_preset(path, start.config.optics)
+        if not other_preset:
+            self._check_preset(path, start.config.optics)
         try:
-            self.model.load_state_dict(start.state_dict())
+            # The physics is that of the preset, not of the weights.
+            self.model.encoder.load_state_dict(free_uncertainty(start.encoder.state_dict()))
         except RuntimeError as error:
             raise InputError(
                 f"{path} holds weights of another shape than this configuration; give the widths "
@@ -124,12 +153,12 @@ class SkinTask(LightningModule):
             ) from error
         return start.trained_on
 
-    def forward(self, photograph: Tensor) -> Reading:
+    def forward(self, photograph: Tensor, known: Capture | None = None) -> Reading:
         """Read photographs: the encoder in the trainer's precision, the physics in float32."""
         photograph = photograph.contiguous(memory_format=torch.channels_last)
-        maps, capture = self.model.encode(photograph)
+        maps, capture, uncertainty = self.model.encode(photograph, known)
         with torch.autocast(photograph.device.type, enabled=False):
-            return Reading(maps, capture, self.model.decode(maps, capture))
+            return Reading(maps, capture, self.model.decode(maps, capture), uncertainty)
 
     def training_step(self, batch: Batches, batch_idx: int) -> Tensor:
         """Compute and log the losses of a batch."""
@@ -163,14 +192,45 @@ class SkinTask(LightningModule):
         self, batch: Batches
     ) -> tuple[dict[str, Reading], Tensor, dict[str, Tensor]]:
         named, parts = name_batches(batch), {}
-        total = torch.zeros((), device=self.device)
+        # Processes that train together need a gradient of every parameter, also without people.
+        total = 0 * torch.cat(list(self.captures.values())).sum()
+        named = {kind: self._edit_people(part) for kind, part in named.items()}
         readings = self._read(named)
         for kind, part in named.items():
             with torch.autocast(part.photograph.device.type, enabled=False):
-                for name, value in compute_losses(readings[kind], part).items():
+                computed = compute_losses(readings[kind], part)
+                if part.people is not None:
+                    computed |= self._compare_people(readings[kind], part, part.people)
+                for name, value in computed.items():
                     parts[f"{kind}_{name}"] = value
                     total = total + getattr(self.weight_of, name) * value
         return readings, total, parts
+
+    def _edit_people(self, batch: Batch) -> Batch:
+        """Multiply the pigments of photographs by the factors that they come with."""
+        if batch.people is None or batch.people.factors is None or not batch.people.factors.any():
+            return batch
+        self.model.eval()
+        with torch.autocast(batch.photograph.device.type, enabled=False):
+            photograph = edit_skin(self.model, batch.photograph, batch.mask, batch.people.factors)
+        self.model.train()
+        return batch._replace(photograph=photograph)
+
+    def _compare_people(self, reading: Reading, batch: Batch, people: People) -> dict[str, Tensor]:
+        """Losses of photographs of the same people."""
+        maps, mask = reading.maps, batch.mask
+        if people.factors is not None:
+            maps = multiply_pigments(maps, -people.factors)
+        captures = self.captures["shift"], self.captures["log_scale"]
+        return {
+            "agreement": agreement.region_agreement(maps, people.regions, mask),
+            "prediction": agreement.colour_prediction(
+                maps, mask, people.colour, self.model.decoder, *captures
+            ),
+            "agreement_uncertainty": agreement.agreement_likelihood(
+                maps, reading.uncertainty, mask
+            ),
+        }
 
     def _read(self, batches: dict[str, Batch]) -> dict[str, Reading]:
         """Read all kinds of pictures in one pass.
@@ -179,16 +239,16 @@ class SkinTask(LightningModule):
         kind, and evaluate all kinds with a mixture of them.
         """
         counts = [len(part.photograph) for part in batches.values()]
-        whole = self(torch.cat([part.photograph for part in batches.values()]))
-        maps, capture = (
-            zip(*(one.split(counts) for one in some), strict=True) for some in whole[:2]
+        whole = self(
+            torch.cat([part.photograph for part in batches.values()]),
+            self._join_known(list(batches.values())),
         )
-        images = whole.reconstruction.split(counts)
-        readings = (
-            Reading(SkinMaps(*a), Capture(*b), c)
-            for a, b, c in zip(maps, capture, images, strict=True)
-        )
-        return dict(zip(batches, readings, strict=True))
+        return dict(zip(batches, split_reading(whole, counts), strict=True))
+
+    def _join_known(self, batches: list[Batch]) -> Capture:
+        complete = self.model.known.complete
+        known = [complete(one.known, len(one.photograph), one.photograph) for one in batches]
+        return Capture(*(torch.cat(parts) for parts in zip(*known, strict=True)))
 
     def configure_optimizers(self) -> OptimizerLRSchedulerConfig:
         """Set up AdamW with warm-up and cosine annealing."""
@@ -230,6 +290,20 @@ def name_batches(batch: Batches) -> dict[str, Batch]:
     return batch if isinstance(batch, dict) else {KINDS[0]: batch}
 
 
+def split_reading(whole: Reading, counts: list[int]) -> list[Reading]:
+    """Split the reading of several batches that were read together."""
+    maps, uncertainty = (
+        zip(*(one.split(counts) for one in some), strict=True)
+        for some in (whole.maps, whole.uncertainty)
+    )
+    captures = zip(*(one.split(counts) for one in whole.capture[:4]), strict=True)
+    images = whole.reconstruction.split(counts)
+    return [
+        Reading(SkinMaps(*a), Capture(*b), c, Uncertainty(*d))
+        for a, b, c, d in zip(maps, captures, images, uncertainty, strict=True)
+    ]
+
+
 def _count_pictures(batch: Batches) -> int:
     return sum(len(part.photograph) for part in name_batches(batch).values())
 
@@ -257,6 +331,7 @@ def _compare_with_truth(reading: Reading, truth: SkinMaps, capture: Capture) -> 
         "error_shading_covariance": losses.error_shading_covariance(maps, truth),
         "lighting": losses.lighting_error(maps, truth),
         "white_balance": losses.white_balance_l1(reading.capture, capture),
+        "uncertainty": losses.pigment_likelihood(maps, reading.uncertainty, truth),
     }
 
 

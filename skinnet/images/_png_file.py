@@ -1,14 +1,19 @@
-"""Writer of plain PNG files: pictures and 16-bit maps with texts."""
+"""Writer of plain PNG files (ISO/IEC 15948): pictures and 16-bit maps with texts."""
 
+import struct
+import zlib
 from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
-from PIL import Image, PngImagePlugin
+from PIL import PngImagePlugin
 
 from skinnet.files import write_atomically
+
+_HEADERS = {(np.dtype(np.uint8), (3,)): (8, 2), (np.dtype(np.uint16), ()): (16, 0)}
+"""Bits of a channel and colour type of each kind of array."""
 
 
 def write_png(path: Path, array: NDArray[Any], text: Mapping[str, str] | None = None) -> None:
@@ -33,12 +38,37 @@ def write_png(path: Path, array: NDArray[Any], text: Mapping[str, str] | None = 
         >>> read_photo(path).shape
         (2, 3, 3)
     """
+    from imagecodecs import deflate_encode
+
     kind = (array.dtype, array.shape[2:])
-    if kind not in ((np.dtype(np.uint8), (3,)), (np.dtype(np.uint16), ())):
+    if kind not in _HEADERS:
         raise ValueError(f"PNG is written from uint8 [H, W, 3] or uint16 [H, W]; got {kind}.")
     info = PngImagePlugin.PngInfo()
     for key, value in (text or {}).items():
         info.add_text(key, value)
-    with write_atomically(path) as part:
-        # The fast level: the low bits of interpolated maps are noise that no level compresses.
-        Image.fromarray(array).save(part, "PNG", pnginfo=info, compress_level=1)
+    height, width = array.shape[:2]
+    header = struct.pack(">IIBBBBB", width, height, *_HEADERS[kind], 0, 0, 0)
+    # The fast level: the low bits of interpolated maps are noise that no level compresses.
+    content = deflate_encode(_filter_rows(array), level=1)  # type: ignore[arg-type]  # any buffer
+    texts = [(name, data) for name, data, *_ in info.chunks]
+    chunks = [(b"IHDR", header), *texts, (b"IDAT", content), (b"IEND", b"")]
+    with write_atomically(path) as part, part.open("wb") as file:
+        file.write(b"\x89PNG\r\n\x1a\n")
+        for name, data in chunks:
+            file.write(struct.pack(">I", len(data)) + name)
+            file.write(data)
+            file.write(struct.pack(">I", zlib.crc32(data, zlib.crc32(name))))
+
+
+def _filter_rows(array: NDArray[Any]) -> NDArray[np.uint8]:
+    """Rows as differences from the row above (filter type 2), the first as it is (type 0).
+
+    One filter for all rows takes a fraction of the time of a choice for each.
+    """
+    rows = array.astype(array.dtype.newbyteorder(">"), copy=False).reshape(len(array), -1)
+    plain = np.ascontiguousarray(rows).view(np.uint8)
+    filtered = np.empty((plain.shape[0], plain.shape[1] + 1), np.uint8)
+    filtered[0, 0], filtered[0, 1:] = 0, plain[0]
+    filtered[1:, 0] = 2
+    np.subtract(plain[1:], plain[:-1], out=filtered[1:, 1:])
+    return filtered

@@ -1,3 +1,4 @@
+from .capture import Capture as Capture
 from .decomposer import Decomposer as Decomposer
 from .decomposition import Decomposition as Decomposition
 from .onnx_model import CAPTURE_NAMES as CAPTURE_NAMES
@@ -15,6 +16,7 @@ __all__ = [
     "MAP_NAMES",
     "ONNX_FORMAT",
     "SHIPPED_ENCODER",
+    "Capture",
     "Decomposer",
     "Decomposition",
     "OnnxModel",

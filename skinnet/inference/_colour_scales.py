@@ -24,6 +24,10 @@ _BLUE: Colours = (
     (13, 16, 30), (12, 42, 78), (3, 70, 121), (1, 100, 160), (7, 132, 198), (83, 163, 218),
     (139, 195, 233), (195, 225, 245), (255, 255, 255),
 )  # fmt: skip
+_GREEN: Colours = (
+    (233, 255, 237), (179, 228, 190), (133, 199, 150), (93, 168, 115), (60, 138, 86), (35, 107, 61),
+    (21, 76, 41), (16, 47, 26), (11, 19, 12),
+)  # fmt: skip
 _GREY: Colours = ((0, 0, 0), (255, 255, 255))
 
 
@@ -83,6 +87,9 @@ HEMOGLOBIN = Scale("blood in the dermis, by volume", _RED, (0, 1, 2, 5, 10, 20),
 SHADING = Scale("relative to the light", _GREY, (0, 20, 50, 100, 200), knee=50)
 SPECULAR = Scale("relative to the light", _BLUE, (0, 1, 2, 5, 10, 20, 50), knee=1)
 MASK = Scale("probability of skin", _GREY, (0, 50, 100))
+UNCERTAINTY = Scale(
+    "standard deviation as a share of the value", _GREEN, (0, 20, 50, 100, 200), knee=50
+)
 DISTANCE = Scale("distance", _BLUE[::-1], (0, 1, 2, 3), symbol="mm", factor=1.0)
 
 PIGMENTS = {"melanin": MELANIN, "hemoglobin": HEMOGLOBIN}

@@ -19,7 +19,7 @@ from skinnet.images.faces.face import Face
 from skinnet.images.faces.framing import HEAD_CENTRE, frame_head
 from skinnet.images.resizing import resize
 from skinnet.inference._editing import FADE, fade_edges
-from skinnet.inference.onnx_model import MAP_NAMES
+from skinnet.inference.onnx_model import _SD_NAMES, MAP_NAMES
 
 _UPRIGHT = 8.0
 """Largest tilt, in degrees, of heads that are read as they are; the network learnt from such."""
@@ -65,7 +65,8 @@ class HeadCrop(NamedTuple):
         """
         if self.square is None:
             return dict(outputs)
-        turned = {name: self._turn_map(outputs[name][0], size) for name in (*MAP_NAMES, "mask")}
+        names = (*MAP_NAMES, *_SD_NAMES, "mask")
+        turned = {name: self._turn_map(outputs[name][0], size) for name in names}
         inside = np.pad(np.ones((size, size), np.float32), 1)
         turned["mask"] *= self._turn_map(inside, size, margin=1)
         return dict(outputs) | {name: values[None] for name, values in turned.items()}

@@ -132,10 +132,12 @@ def _print(source: Source, folder: Path, result: _Result, count: int, as_json: b
 
 
 def _describe_skin(summary: dict[str, Any]) -> str:
-    means = {pigment: summary["maps"][pigment]["mean"] for pigment in ("melanin", "hemoglobin")}
-    if means["melanin"] is None:
+    pigments = summary["pigments"]
+    if pigments["melanin"]["mean"] is None:
         return "no skin was found"
-    numbers = ", ".join(f"{pigment} {mean:.3g}" for pigment, mean in means.items())
+    numbers = ", ".join(
+        f"{name} {each['mean']:.2g} ± {each['sd']:.1g}" for name, each in pigments.items()
+    )
     return f"{numbers} on skin, {summary['skin_share']:.0%} of the crop"
 
 

@@ -6,6 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from skinnet.images.faces._face_parts import FaceRegion
+from skinnet.inference._uncertainty import find_interval
 
 _LEAST_PIXELS = 30
 """Least pixels of skin of a region whose pigments are given."""
@@ -21,11 +22,15 @@ class PigmentSummary(NamedTuple):
         mean: Mean volume fraction.
         std: Standard deviation over pixels.
         median: Median.
+        sd: Standard deviation of the mean: how uncertain it is.
+        interval: Fractions between which the true mean lies with a probability of 90 %.
     """
 
     mean: float | None = None
     std: float | None = None
     median: float | None = None
+    sd: float | None = None
+    interval: tuple[float, float] | None = None
 
 
 class RegionSummary(NamedTuple):
@@ -49,24 +54,43 @@ class RegionSummary(NamedTuple):
         return {**pigments, "share": self.share, "pixels": self.pixels}
 
 
+class Pigment(NamedTuple):
+    """A pigment over a region's box.
+
+    Attributes:
+        values: Volume fractions [h, w].
+        log_sd: Standard deviation of the logarithm of the region's mean.
+        top: Largest fraction.
+    """
+
+    values: NDArray[np.float32]
+    log_sd: float
+    top: float
+
+
 def summarise_region(
-    region: FaceRegion, skin: NDArray[np.bool_], *pigments: NDArray[np.float32]
+    region: FaceRegion, read: NDArray[np.bool_], melanin: Pigment, hemoglobin: Pigment
 ) -> RegionSummary:
-    """Summarise melanin and hemoglobin [h, w], in the region's box, where there is skin."""
-    read = region.patch.inside & skin
+    """Summarise melanin and hemoglobin over the pixels [h, w] of the region's box that are read."""
     pixels = int(read.sum())
     share = pixels / max(1, region.area)
     if pixels < _LEAST_PIXELS or share < _LEAST_SHARE:
-        melanin = hemoglobin = PigmentSummary()
-    else:
-        melanin, hemoglobin = (_summarise(values[read]) for values in pigments)
-    return RegionSummary(melanin, hemoglobin, _round(share), pixels)
+        return RegionSummary(PigmentSummary(), PigmentSummary(), _round(share), pixels)
+    of_melanin, of_hemoglobin = (_summarise(each, read) for each in (melanin, hemoglobin))
+    return RegionSummary(of_melanin, of_hemoglobin, _round(share), pixels)
 
 
-def _summarise(values: NDArray[np.float32]) -> PigmentSummary:
-    wide = values.astype(np.float64)
-    numbers = wide.mean(), wide.std(), np.median(wide)
-    return PigmentSummary(*(_round(float(number)) for number in numbers))
+def _summarise(pigment: Pigment, read: NDArray[np.bool_]) -> PigmentSummary:
+    wide = pigment.values[read].astype(np.float64)
+    mean = float(wide.mean())
+    low, high = find_interval(mean, pigment.log_sd, pigment.top)
+    return PigmentSummary(
+        mean=_round(mean),
+        std=_round(float(wide.std())),
+        median=_round(float(np.median(wide))),
+        sd=_round(mean * pigment.log_sd),
+        interval=(_round(low), _round(high)),
+    )
 
 
 def _round(number: float) -> float:

@@ -51,6 +51,13 @@ class Subject(NamedTuple):
     skin: NDArray[np.float32] | None = None
     notes: tuple[str, ...] = ()
 
+    def describe(self, name: str) -> str:
+        """Describe what is read in a photograph of a name, within a sentence."""
+        if self.face is None:
+            return f"skin in {name}"
+        several = self.faces is not None and len(self.faces) > 1
+        return f"face {self.face_id} in {name}" if several else f"the face in {name}"
+
     def keep_own_skin(self, mask: NDArray[np.float32]) -> NDArray[np.float32]:
         """Set a mask [h, w] to 0 where another face is nearer, measured in sides of each face."""
         others = [face for face in self.faces or () if face is not self.face]

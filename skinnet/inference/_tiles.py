@@ -77,7 +77,11 @@ def draw_picture(caption: str, pixels: NDArray[np.uint8]) -> Image.Image:
 
 
 def draw_pigment_map(
-    name: str, values: NDArray[np.floating], mask: NDArray[np.floating], caption: str | None = None
+    name: str,
+    values: NDArray[np.floating],
+    mask: NDArray[np.floating],
+    caption: str | None = None,
+    note: str = "",
 ) -> Image.Image:
     """Draw a tile with a map of a pigment, on the scale that all maps of this pigment have.
 
@@ -86,6 +90,7 @@ def draw_pigment_map(
         values: Volume fractions [h, w]; the scale shows them in percent.
         mask: Probability of skin [h, w]; the tile is blank where it is 0.
         caption: The text above the map; the pigment's name by default.
+        note: A smaller text beside the caption, such as the mean.
 
     Returns:
         The tile.
@@ -96,13 +101,17 @@ def draw_pigment_map(
         >>> draw_pigment_map("melanin", np.full((4, 4), 0.03), np.ones((4, 4))).size
         (300, 394)
     """
-    return draw_map(caption or name, values, mask, PIGMENTS[name])
+    return draw_map(caption or name, values, mask, PIGMENTS[name], note)
 
 
 def draw_map(
-    caption: str, values: NDArray[np.floating], mask: NDArray[np.floating], scale: Scale
+    caption: str,
+    values: NDArray[np.floating],
+    mask: NDArray[np.floating],
+    scale: Scale,
+    note: str = "",
 ) -> Image.Image:
-    """Draw a tile of values [h, w], blank where `mask` is 0."""
+    """Draw a tile of values [h, w], blank where `mask` is 0, with a note beside the caption."""
     share = np.clip(mask, 0, 1).astype(np.float32)
     width, height = _fit_size(*share.shape)
     weight = resize(share, width, height)
@@ -111,7 +120,8 @@ def draw_map(
     mean = sums / np.maximum(weight, 1e-6)
     colours = weight[..., None] * scale.colour(mean) + (1 - weight[..., None]) * np.array(BLANK)
     skin = values[mask > SKIN_THRESHOLD]
-    return _draw_tile(caption, colours.astype(np.uint8), scale, _note_excess(skin, scale))
+    notes = [each for each in (note, _note_excess(skin, scale)) if each]
+    return _draw_tile(caption, colours.astype(np.uint8), scale, "\n".join(notes))
 
 
 def draw_plain_map(
@@ -124,7 +134,9 @@ def draw_plain_map(
 
 def draw_offset(values: NDArray[np.float32]) -> Image.Image:
     """Draw a tile of an offset, linear sRGB [h, w, 3], on grey."""
-    picture = _draw_tile("offset", to_uint8(0.5 + 0.5 * values))
+    size = _fit_size(*values.shape[:2])
+    small = np.stack([resize(values[..., channel], *size) for channel in range(3)], -1)
+    picture = _draw_tile("offset", to_uint8(0.5 + 0.5 * small))
     tile = Image.new("RGB", (TILE, picture.height + _SCALE), _PAPER)
     tile.paste(picture)
     _write(tile, _LABELS, "linear sRGB")
@@ -161,7 +173,9 @@ def _draw_tile(
     tile = Image.new("RGB", (TILE, _CAPTION + TILE + below), _PAPER)
     pen = ImageDraw.Draw(tile)
     pen.text((0, 2), caption, _INK, _load_font(20))
-    pen.text((TILE - 1, 7), note, _INK, _load_font(15), anchor="ra")
+    size, top = (12, 0) if "\n" in note else (15, 7)
+    place = (TILE - 1, top)
+    pen.multiline_text(place, note, _INK, _load_font(size), anchor="ra", align="right", spacing=2)
     tile.paste(_fit_square(pixels), (0, _CAPTION))
     if scale is not None:
         _draw_scale(tile, scale)

@@ -17,12 +17,21 @@ from skinnet.images.photograph import read_picture
 from skinnet.images.picture import Picture
 from skinnet.images.resizing import resize
 from skinnet.images.srgb import srgb_to_linear
+from skinnet.inference._capture_inputs import (
+    CaptureLike,
+    Inputs,
+    make_capture_inputs,
+    name_known,
+)
+from skinnet.inference._capture_names import name_camera, name_light
+from skinnet.inference._doubts import list_doubts
 from skinnet.inference._editing import ColourChange, apply_change, compute_change
 from skinnet.inference._face_choice import FaceChoice
 from skinnet.inference._onnx_pair import get_decoder_path, refuse_other_export
 from skinnet.inference._skin_mask import adopt_mask, find_skin
 from skinnet.inference._subject import Region, Subject, find_subjects
 from skinnet.inference._transparency import note_transparency
+from skinnet.inference._uncertainty import Uncertainty
 from skinnet.inference.decomposition import Decomposition
 from skinnet.inference.full_resolution._colour_table import tabulate_colours
 from skinnet.inference.full_resolution._layers import Layers, enlarge_layers, sharpen_layers
@@ -57,8 +66,8 @@ class Decomposer:
         >>> from skinnet.inference import Decomposer
         >>> decomposition = Decomposer()(astronaut())
         >>> skin = decomposition.mask > 0.5
-        >>> print(f"{decomposition.melanin[skin].mean():.2f}")
-        0.03
+        >>> 0.01 < float(decomposition.melanin[skin].mean()) < 0.1
+        True
     """
 
     def __init__(self, model: str | Path | None = None, threads: int | None = None) -> None:
@@ -97,6 +106,7 @@ class Decomposer:
         *,
         faces: None = None,
         region: Region = "face",
+        capture: CaptureLike | None = None,
     ) -> Decomposition: ...
 
     @overload
@@ -109,6 +119,7 @@ class Decomposer:
         *,
         faces: FaceChoice,
         region: Region = "face",
+        capture: CaptureLike | None = None,
     ) -> list[Decomposition]: ...
 
     def __call__(
@@ -120,6 +131,7 @@ class Decomposer:
         *,
         faces: FaceChoice | None = None,
         region: Region = "face",
+        capture: CaptureLike | None = None,
     ) -> Decomposition | list[Decomposition]:
         """Decompose a photograph.
 
@@ -134,6 +146,7 @@ class Decomposer:
                 one alone.
             region: "face", or "skin" to read whatever skin the photograph shows, such as a forearm,
                 without a search for a face.
+            capture: What is known of the light and the camera; None: nothing.
 
         Returns:
             Maps of the photograph's size, light and camera. If `faces` is given, a list of them,
@@ -153,8 +166,9 @@ class Decomposer:
         """
         picture = _as_picture(image)
         name = name or _name_image(image)
+        known = {} if capture is None else make_capture_inputs(capture, self.encoder)
         subjects = find_subjects(picture.srgb, name, faces, "skin" if whole_image else region)
-        read = [self._decompose(picture, subject, name, detail) for subject in subjects]
+        read = [self._decompose(picture, subject, name, detail, known) for subject in subjects]
         return read[0] if faces is None else read
 
     def edit(
@@ -167,6 +181,7 @@ class Decomposer:
         *,
         faces: FaceChoice = "largest",
         region: Region = "face",
+        capture: CaptureLike | None = None,
     ) -> NDArray[np.uint8]:
         """Multiply the pigments of a photograph.
 
@@ -182,6 +197,7 @@ class Decomposer:
             name: Name of the image in error messages; the path by default.
             faces: "all", "largest", or how many of the largest faces to edit.
             region: "face", or "skin" to edit whatever skin the photograph shows.
+            capture: What is known of the light and the camera; None: nothing.
 
         Returns:
             The edited photograph, uint8 sRGB [H, W, 3].
@@ -201,7 +217,10 @@ class Decomposer:
         picture = _as_picture(image)
         name = name or _name_image(image)
         return self.edit_picture(
-            picture, melanin, hemoglobin, whole_image, name, faces=faces, region=region
+            *(picture, melanin, hemoglobin, whole_image, name),
+            faces=faces,
+            region=region,
+            capture=capture,
         ).srgb
 
     def edit_picture(
@@ -214,6 +233,7 @@ class Decomposer:
         *,
         faces: FaceChoice = "largest",
         region: Region = "face",
+        capture: CaptureLike | None = None,
     ) -> Picture:
         """Multiply the pigments of a picture, which keeps its depth, colour space and alpha.
 
@@ -225,6 +245,7 @@ class Decomposer:
             name: Name of the picture in error messages; its own by default.
             faces: "all", "largest", or how many of the largest faces to edit.
             region: "face", or "skin" to edit whatever skin the photograph shows.
+            capture: What is known of the light and the camera; None: nothing.
 
         Returns:
             The edited picture. Pixels that are not skin keep their stored values.
@@ -245,39 +266,47 @@ class Decomposer:
         """
         factors = {"melanin": melanin, "hemoglobin": hemoglobin}
         _check_factors(**factors)
+        known = {} if capture is None else make_capture_inputs(capture, self.encoder)
         name = name or picture.name
         photo, colour = picture.srgb, picture.as_colour()
         edited = replace(colour, pixels=colour.pixels.copy())
         notes = list(colour.notes)
         for subject in find_subjects(photo, name, faces, "skin" if whole_image else region):
-            notes += self._edit_in_place(edited, photo, subject, factors, name)
+            notes += self._edit_in_place(edited, photo, subject, factors, name, known)
         return replace(edited, notes=tuple(dict.fromkeys(notes)))
 
     def _decompose(
-        self, picture: Picture, subject: Subject, name: str, detail: bool
+        self, picture: Picture, subject: Subject, name: str, detail: bool, known: Inputs
     ) -> Decomposition:
         photo, box = picture.srgb, subject.crop.box
-        encoder_outputs, skin = self._read(photo, subject)
+        encoder_outputs, skin = self._read(photo, subject, known)
         layers = self._make_layers(photo[box.slices], encoder_outputs, skin, detail)
         inside = subject.crop.find_inside()
         pasted = paste_layers(layers, photo, box, inside)
         alpha = None if picture.alpha is None else picture.alpha[box.slices]
-        notes = note_transparency(alpha, pasted["mask"][box.slices], name)
+        mask, who = pasted["mask"][box.slices], subject.describe(name)
         return Decomposition(
             **pasted,
-            light=self._name_light(encoder_outputs),
-            camera=_name_camera(encoder_outputs),
+            light=name_light(encoder_outputs, self.encoder),
+            camera=name_camera(encoder_outputs),
             box=box,
             pixels_read=int(np.count_nonzero(inside)),
             tilt=None if subject.face is None else subject.face.tilt,
             colour_space=picture.colour_space,
-            notes=(*picture.notes, *notes, *subject.notes),
+            notes=(
+                *picture.notes,
+                *note_transparency(alpha, mask, name),
+                *subject.notes,
+                *list_doubts(who, photo[box.slices], mask, encoder_outputs, name_known(known)),
+            ),
             output_info=self.encoder.output_info,
             model={
                 "version": self.encoder.version,
                 "trained_on": self.encoder.trained_on,
                 "optics": self.encoder.optics,
             },
+            uncertainty=Uncertainty.from_outputs(encoder_outputs, self.encoder.region_share),
+            capture_known=name_known(known),
             face_id=subject.face_id,
             faces_found=None if subject.faces is None else len(subject.faces),
             face_parts=None if subject.face is None else find_face_parts(photo, subject.face),
@@ -290,10 +319,11 @@ class Decomposer:
         subject: Subject,
         factors: Mapping[str, float],
         name: str,
+        known: Inputs,
     ) -> tuple[str, ...]:
         """Multiply the pigments of one subject in the pixels of `colour`. Returns notes."""
         box = subject.crop.box
-        encoder_outputs, skin = self._read(photo, subject)
+        encoder_outputs, skin = self._read(photo, subject, known)
         change = self._compute_change(encoder_outputs, factors)
         fade = subject.crop.fade(change.loss.shape[:2], photo.shape)
         mask = skin if fade.min() == 1 else skin * resize(fade, box.width, box.height)
@@ -306,18 +336,18 @@ class Decomposer:
         )
 
     def _read(
-        self, photo: NDArray[np.uint8], subject: Subject
+        self, photo: NDArray[np.uint8], subject: Subject, known: Inputs
     ) -> tuple[_Arrays, NDArray[np.float32]]:
         """Maps and capture of the subject's box, and its mask at the photograph's size."""
-        encoder_outputs = self._encode(photo, subject)
+        encoder_outputs = self._encode(photo, subject, known)
         skin = find_skin(photo, subject, encoder_outputs["mask"][0])
         return adopt_mask(encoder_outputs, skin, photo[subject.crop.box.slices]), skin
 
-    def _encode(self, photo: NDArray[np.uint8], subject: Subject) -> _Arrays:
+    def _encode(self, photo: NDArray[np.uint8], subject: Subject, known: Inputs) -> _Arrays:
         """Maps [1, h, w] of the subject's box, and its capture [1, ...], at the working size."""
         size = self.encoder.working_size
         cut = subject.crop.cut(photo, size)
-        encoder_outputs = self.encoder.run({"image": cut[None]})
+        encoder_outputs = self.encoder.run({"image": cut[None], **known})
         outputs = subject.crop.turn_back(encoder_outputs, size)
         return outputs | {"mask": subject.keep_own_skin(outputs["mask"][0])[None]}
 
@@ -358,16 +388,6 @@ class Decomposer:
         before, after = (srgb_to_linear(self._decode(maps)) for maps in (bare, bare | scaled))
         return compute_change(before, after, encoder_outputs["mask"][0])
 
-    def _name_light(self, encoder_outputs: _Arrays) -> dict[str, float]:
-        weights = encoder_outputs["light"][0].tolist()
-        if len(weights) != len(self.encoder.lights):
-            raise InputError(
-                f"{self.path} names {len(self.encoder.lights)} lights, but gives {len(weights)} "
-                "weights; export it again."
-            )
-        named = dict(zip(self.encoder.lights, weights, strict=True))
-        return named | {"temperature_k": float(encoder_outputs["temperature"][0])}
-
 
 def _check_factors(**factors: float) -> None:
     for pigment, factor in factors.items():
@@ -386,12 +406,3 @@ def _name_image(image: ImageLike) -> str:
     if isinstance(image, Picture):
         return image.name
     return str(image) if isinstance(image, str | Path) else "the image"
-
-
-def _name_camera(encoder_outputs: _Arrays) -> dict[str, Any]:
-    balance = encoder_outputs["white_balance"][0].astype(np.float64)
-    r_over_g, b_over_g = np.exp(balance).tolist()
-    return {
-        "components": encoder_outputs["camera"][0].tolist(),
-        "white_balance": {"r_over_g": r_over_g, "b_over_g": b_over_g},
-    }

@@ -15,11 +15,28 @@ from skinnet.images.colour_space import ColourSpace
 from skinnet.images.faces._face_parts import FaceParts, FaceRegion
 from skinnet.images.faces._face_regions import REGION_NAMES
 from skinnet.images.faces._outlines import Patch
-from skinnet.inference._regions import RegionSummary, summarise_region
+from skinnet.images.resizing import resize
+from skinnet.inference._regions import Pigment, RegionSummary, summarise_region
+from skinnet.inference._uncertainty import (
+    LEVEL,
+    PIGMENTS,
+    Uncertainty,
+    describe_mean,
+    find_factor,
+    find_interval,
+    summarise_mean,
+)
 from skinnet.inference.onnx_model import OutputInfo
 
 SKIN_THRESHOLD = 0.5
 """Pixels with a larger mask are counted as skin."""
+
+MAP_FILES = (
+    *("melanin", "hemoglobin", "shading", "specular", "mask"),
+    *("offset_r", "offset_g", "offset_b"),
+    *(f"{pigment}_sd" for pigment in PIGMENTS),
+)
+"""Names of the maps [H, W], and how the names of their files end."""
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -46,7 +63,10 @@ class Decomposition:
             read.
         box: The part of the photograph that was read; of a tilted head, the upright rectangle
             around the turned square that was read.
-        output_info: Unit, range and description of each map.
+        output_info: Unit, range and description of each map of the network; `describe_map` has
+            those of the maps here.
+        uncertainty: Standard deviations of the natural logarithms of melanin and hemoglobin at the
+            network's resolution, which `melanin_sd`, `hemoglobin_sd` and `interval` are made of.
         colour_space: The colour space in which the photograph was, and how that is known.
         notes: Sentences that the user should read, such as what was assumed of the photograph.
         model: `version` and `trained_on` of the encoder, and `optics`, the preset of the skin's
@@ -59,12 +79,13 @@ class Decomposition:
         tilt: Angle in degrees by which the head is turned clockwise; None if no face was looked
             for.
         pixels_read: Number of pixels in the box that were read; None for all of them.
+        capture_known: Names of the parts of the capture that were given, such as "white_balance".
 
     Example:
         >>> from skimage.data import astronaut
         >>> from skinnet import Decomposer
         >>> Decomposer(threads=1)(astronaut(), detail=False)
-        <Decomposition 512 x 512: melanin 0.0287, hemoglobin 0.0291 on skin, 16% of the crop>
+        <Decomposition 512 x 512: melanin 0.048 ± 0.007, hemoglobin 0.059 ± 0.01, 17% is skin>
     """
 
     melanin: NDArray[np.float32]
@@ -79,6 +100,7 @@ class Decomposition:
     box: Box
     output_info: Mapping[str, OutputInfo]
     model: dict[str, str]
+    uncertainty: Uncertainty
     colour_space: ColourSpace = ColourSpace("sRGB", "assumed")
     notes: tuple[str, ...] = ()
     face_id: int | None = None
@@ -86,18 +108,19 @@ class Decomposition:
     face_parts: FaceParts | None = None
     tilt: float | None = None
     pixels_read: int | None = None
+    capture_known: tuple[str, ...] = ()
 
     def __repr__(self) -> str:
         height, width = self.mask.shape
-        skin = self.mask > SKIN_THRESHOLD
-        if not skin.any():
+        if not self.means:
             return f"<Decomposition {width} x {height}: no skin>"
         pigments = (
-            f"{name} {getattr(self, name)[skin].mean():.3g}" for name in ("melanin", "hemoglobin")
+            f"{name} {describe_mean(mean, self._log_sds[name])}"
+            for name, mean in self.means.items()
         )
         return (
-            f"<Decomposition {width} x {height}: {', '.join(pigments)} on skin, "
-            f"{self.skin_share:.0%} of the crop>"
+            f"<Decomposition {width} x {height}: {', '.join(pigments)}, "
+            f"{self.skin_share:.0%} is skin>"
         )
 
     @property
@@ -105,6 +128,56 @@ class Decomposition:
         """Share of skin in what was read: in `box`, or in the turned square that it bounds."""
         area = self.box.width * self.box.height if self.pixels_read is None else self.pixels_read
         return np.count_nonzero(self.mask > SKIN_THRESHOLD) / max(area, 1)
+
+    @cached_property
+    def means(self) -> dict[str, float]:
+        """Mean `melanin` and `hemoglobin` of the skin; empty if there is none."""
+        skin = self.mask > SKIN_THRESHOLD
+        if not skin.any():
+            return {}
+        return {name: float(np.mean(getattr(self, name)[skin], dtype=float)) for name in PIGMENTS}
+
+    @property
+    def melanin_sd(self) -> NDArray[np.float32]:
+        """Standard deviation of each pixel's melanin, float32 [H, W].
+
+        To first order it is the fraction times the standard deviation of its natural logarithm. It
+        is 0 where melanin is, and is made anew each time, to save memory.
+        """
+        return self._make_sd_map("melanin")
+
+    @property
+    def hemoglobin_sd(self) -> NDArray[np.float32]:
+        """Standard deviation of each pixel's hemoglobin, float32 [H, W], as of melanin."""
+        return self._make_sd_map("hemoglobin")
+
+    def interval(self, level: float = LEVEL) -> dict[str, tuple[float, float]]:
+        """Find between which fractions the mean pigments of the skin truly lie.
+
+        Pixels and regions are less certain than the mean: `melanin_sd`, `regions`.
+
+        Args:
+            level: Probability that the true mean lies in the interval, between 0 and 1.
+
+        Returns:
+            Lowest and highest fraction of `melanin` and `hemoglobin`. Empty if there is no skin.
+
+        Raises:
+            InputError: The level is no such probability.
+
+        Example:
+            >>> from skimage.data import astronaut
+            >>> from skinnet import Decomposer
+            >>> face = Decomposer(threads=1)(astronaut())
+            >>> low, high = face.interval()["melanin"]
+            >>> low < face.means["melanin"] < high
+            True
+        """
+        find_factor(0.0, level)  # refuses a level also where there is no skin
+        return {
+            name: find_interval(mean, self._log_sds[name], self._find_top(name), level)
+            for name, mean in self.means.items()
+        }
 
     @property
     def landmarks(self) -> NDArray[np.float32] | None:
@@ -117,8 +190,9 @@ class Decomposition:
 
     @cached_property
     def regions(self) -> dict[str, RegionSummary]:
-        """Mean, standard deviation and median of melanin and hemoglobin in regions of the face.
+        """Melanin and hemoglobin in regions of the face.
 
+        Of each there are mean, standard deviation over pixels, median, and how certain the mean is.
         They are forehead, left and right cheek (the person's), nose, lips, chin, neck and eyelids.
         Each has `share`, the part of it that is skin. Of a region that hair, cloth or the head's
         turn hides the pigments are None. Empty if no face was looked for.
@@ -127,8 +201,8 @@ class Decomposition:
             >>> from skimage.data import astronaut
             >>> from skinnet import Decomposer
             >>> regions = Decomposer(threads=1)(astronaut()).regions
-            >>> print(f"{regions['nose'].melanin.median:.2f}")
-            0.03
+            >>> 0.01 < regions["nose"].melanin.median < 0.1
+            True
         """
         parts = {} if self.face_parts is None else self.face_parts.regions
         return {name: self._summarise_region(region) for name, region in parts.items()}
@@ -183,9 +257,22 @@ class Decomposition:
         Returns:
             Maps [H, W]; the channels of the offset are `offset_r`, `offset_g` and `offset_b`.
         """
-        names = ("melanin", "hemoglobin", "shading", "specular", "mask")
-        channels = {f"offset_{name}": self.offset[..., i] for i, name in enumerate("rgb")}
-        return {name: getattr(self, name) for name in names} | channels
+        return {name: self.get_map(name) for name in MAP_FILES}
+
+    def get_map(self, name: str) -> NDArray[np.float32]:
+        """Return one map by its name.
+
+        Args:
+            name: A key of `maps()`.
+
+        Returns:
+            The map [H, W].
+        """
+        base, _, channel = name.rpartition("_")
+        if base == "offset":
+            return self.offset[..., "rgb".index(channel)]
+        values: NDArray[np.float32] = getattr(self, name)
+        return values
 
     def describe_map(self, name: str) -> OutputInfo:
         """Return unit, range and description of a map.
@@ -194,8 +281,11 @@ class Decomposition:
             name: A key of `maps()`.
 
         Returns:
-            The entry of `output_info`.
+            The entry of `output_info`; standard deviations have the unit of their pigment.
         """
+        if name.endswith("_sd"):
+            unit, ends, description = self.output_info[name.removesuffix("_sd")]
+            return OutputInfo(unit, ends, f"standard deviation of: {description}")
         return self.output_info[name.removesuffix("_r").removesuffix("_g").removesuffix("_b")]
 
     def summary(self) -> dict[str, Any]:
@@ -205,14 +295,16 @@ class Decomposition:
             `id` (of the face), `faces_found`, `photo` (size), `colour_space` (`name`,
             `known_from`), `notes`, `box`, `skin_share` (share of skin in what
             was read), `tilt` (degrees; None without a face), `maps` (`unit`, `mean`, `std`, `p5`
-            and `p95` of each; None where there is no skin),
-            `regions` (of each `melanin` and `hemoglobin` with `mean`, `std` and `median`, which are
-            None where it is hidden, `share` and `pixels`), `landmarks` (a list of [x, y] to a
-            tenth of a pixel; None without a face), `light`, `camera`, `version` and `model`.
+            and `p95` of each; None where there is no skin), `pigments` (`mean` of `melanin` and
+            `hemoglobin` with its `sd` and the `interval` of the probability `level`),
+            `regions` (of each `melanin` and `hemoglobin` with `mean`, `std`, `median`, `sd` and
+            `interval`, which are None where it is hidden, `share` and `pixels`), `landmarks` (a
+            list of [x, y] to a tenth of a pixel; None without a face), `light`, `camera`,
+            `capture_known` (what was given of them), `version` and `model`.
         """
         skin = self.mask > SKIN_THRESHOLD
         height, width = skin.shape
-        maps = {name: value for name, value in self.maps().items() if name != "mask"}
+        names = [name for name in MAP_FILES if name != "mask"]
         return {
             "id": self.face_id,
             "faces_found": self.faces_found,
@@ -226,21 +318,52 @@ class Decomposition:
             "skin_share": _round(self.skin_share),
             "tilt": None if self.tilt is None else round(self.tilt, 1),
             "maps": {
-                name: {"unit": self.describe_map(name).unit} | _summarise(value[skin])
-                for name, value in maps.items()
+                name: {"unit": self.describe_map(name).unit} | _summarise(self.get_map(name)[skin])
+                for name in names
             },
+            "pigments": {name: self._summarise_pigment(name) for name in PIGMENTS},
             "regions": {name: region.to_json() for name, region in self.regions.items()},
             "landmarks": None if self.landmarks is None else _round_points(self.landmarks),
             "light": _round_all(self.light),
             "camera": _round_all(self.camera),
+            "capture_known": list(self.capture_known),
             "version": __version__,
             "model": self.model,
         }
 
     def _summarise_region(self, region: FaceRegion) -> RegionSummary:
-        box = region.patch.box.slices
-        skin = self.mask[box] > SKIN_THRESHOLD
-        return summarise_region(region, skin, self.melanin[box], self.hemoglobin[box])
+        box = region.patch.box
+        read = region.patch.inside & (self.mask[box.slices] > SKIN_THRESHOLD)
+        rows, columns = np.nonzero(read)
+        log_sds = list(self.uncertainty.face)
+        if rows.size:
+            log_sds = self.uncertainty.of_region(self.box, rows + box.top, columns + box.left)
+        melanin, hemoglobin = (
+            Pigment(getattr(self, name)[box.slices], log_sd, self._find_top(name))
+            for name, log_sd in zip(PIGMENTS, log_sds, strict=True)
+        )
+        return summarise_region(region, read, melanin, hemoglobin)
+
+    @property
+    def _log_sds(self) -> dict[str, float]:
+        return dict(zip(PIGMENTS, self.uncertainty.face, strict=True))
+
+    def _find_top(self, pigment: str) -> float:
+        return self.output_info[pigment].range[1]
+
+    def _summarise_pigment(self, name: str) -> dict[str, Any]:
+        mean = self.means.get(name)
+        summary = summarise_mean(mean, self._log_sds[name], self._find_top(name))
+        rounded: dict[str, Any] = _round_all(summary)
+        return rounded
+
+    def _make_sd_map(self, pigment: str) -> NDArray[np.float32]:
+        sds = np.zeros_like(self.mask)
+        box = self.box
+        log_sd = self.uncertainty.of_pixels(pigment)
+        sds[box.slices] = resize(log_sd, box.width, box.height)
+        sds *= getattr(self, pigment)
+        return sds
 
     def _paste(self, patches: Sequence[Patch]) -> NDArray[np.bool_]:
         """A mask of the photograph's size."""
@@ -266,7 +389,9 @@ def _summarise(values: NDArray[np.float32]) -> dict[str, float | None]:
 def _round_all(numbers: Any) -> Any:
     if isinstance(numbers, dict):
         return {name: _round_all(value) for name, value in numbers.items()}
-    return [_round(number) for number in numbers] if isinstance(numbers, list) else _round(numbers)
+    if isinstance(numbers, list):
+        return [_round(number) for number in numbers]
+    return None if numbers is None else _round(numbers)
 
 
 def _round(number: float) -> float:

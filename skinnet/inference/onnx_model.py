@@ -21,7 +21,7 @@ from skinnet.inference._onnx_session import (
     open_session,
 )
 
-ONNX_FORMAT = "1"
+ONNX_FORMAT = "2"
 """Version of the inputs, outputs and metadata of a file."""
 
 SHIPPED_ENCODER = Path(__file__).parent / "models" / "skin.onnx"
@@ -33,8 +33,18 @@ MAP_NAMES = ("melanin", "hemoglobin", "shading", "specular", "offset")
 CAPTURE_NAMES = ("light", "temperature", "camera", "white_balance")
 """Light and camera of a photograph: outputs of the encoder and inputs of the decoder."""
 
+_KNOWN_NAMES = tuple(f"known_{name}" for name in (*CAPTURE_NAMES, "linear", "exposure"))
+"""What may be known of a capture: optional inputs of the encoder; NaN is what is not known."""
+
+_SD_NAMES = ("melanin_sd", "hemoglobin_sd")
+"""Maps of the standard deviations of the pigments' natural logarithms."""
+
 _INPUTS = {"encoder": {"image"}, "decoder": {*MAP_NAMES, *CAPTURE_NAMES}}
-_OUTPUTS = {"encoder": {*MAP_NAMES, *CAPTURE_NAMES, "mask"}, "decoder": {"image"}}
+_OPTIONAL = {"encoder": set(_KNOWN_NAMES), "decoder": set[str]()}
+_OUTPUTS = {
+    "encoder": {*MAP_NAMES, *CAPTURE_NAMES, *_SD_NAMES, "mask", "face_sd"},
+    "decoder": {"image"},
+}
 
 
 class OutputInfo(NamedTuple):
@@ -64,6 +74,8 @@ class OnnxModel:
         working_size: Longer side, in pixels, to which the encoder's photographs are resized.
         lights: Names of the lights that the output `light` weights.
         output_info: Unit, range and description of each map of the encoder; empty for a decoder.
+        region_share: Of melanin and hemoglobin: how much of the variance that pixels have beyond
+            that of the face remains in the mean of a region.
 
     Example:
         >>> import numpy as np
@@ -82,13 +94,15 @@ class OnnxModel:
     working_size: int
     lights: tuple[str, ...]
     output_info: Mapping[str, OutputInfo]
+    region_share: tuple[float, float]
 
     def run(self, inputs: Mapping[str, NDArray[Any]]) -> dict[str, NDArray[np.float32]]:
         """Run the network.
 
         Args:
-            inputs: `image`, uint8 sRGB [batch, h, w, 3], for an encoder; `MAP_NAMES`, [batch, h, w]
-                or [batch, h, w, 3], and `CAPTURE_NAMES` for a decoder.
+            inputs: `image`, uint8 sRGB [batch, h, w, 3], for an encoder, and optionally what is
+                known of the capture, `known_light` and so on, NaN where it is not; `MAP_NAMES`,
+                [batch, h, w] or [batch, h, w, 3], and `CAPTURE_NAMES` for a decoder.
 
         Returns:
             Outputs by name; the decoder's `image` is sRGB [batch, h, w, 3].
@@ -155,10 +169,13 @@ def _check_metadata(path: Path, kind: str, header: Header) -> None:
 def _check_names(path: Path, kind: str, session: onnxruntime.InferenceSession) -> None:
     inputs = {item.name for item in session.get_inputs()}
     outputs = {item.name for item in session.get_outputs()}
-    if inputs != _INPUTS[kind] or not _OUTPUTS[kind] <= outputs:
+    optional = {item.name for item in session.get_overridable_initializers()}
+    is_complete = _OPTIONAL[kind] <= optional and _OUTPUTS[kind] <= outputs
+    if inputs != _INPUTS[kind] or not is_complete:
+        found = ", ".join(sorted(inputs | optional))
         raise InputError(
             f"{path} is labelled as {_with_article(kind)}, but its inputs are "
-            f"{', '.join(sorted(inputs))} and its outputs {', '.join(sorted(outputs))}; {REMEDY}."
+            f"{found} and its outputs {', '.join(sorted(outputs))}; {REMEDY}."
         )
 
 
@@ -167,7 +184,8 @@ def _read_metadata(
 ) -> OnnxModel:
     try:
         outputs = json.loads(metadata["skinnet.outputs"])
-        maps = (*MAP_NAMES, "mask") if metadata["skinnet.kind"] == "encoder" else ()
+        is_encoder = metadata["skinnet.kind"] == "encoder"
+        maps = (*MAP_NAMES, "mask", *_SD_NAMES) if is_encoder else ()
         size = int(metadata["skinnet.working_size"])
         if size < 1:
             raise ValueError(f"working size {size}")
@@ -180,6 +198,7 @@ def _read_metadata(
             size,
             tuple(json.loads(metadata["skinnet.lights"])),
             {name: _read_output_info(outputs[name]) for name in maps},
+            _read_pair(metadata["skinnet.region_share"]),
         )
     except (KeyError, ValueError, TypeError, AttributeError) as error:
         raise InputError(f"The metadata of {path} is damaged ({error!r}); {REMEDY}.") from error
@@ -188,6 +207,11 @@ def _read_metadata(
 def _read_output_info(entry: Mapping[str, Any]) -> OutputInfo:
     low, high = entry["range"]
     return OutputInfo(str(entry["unit"]), (float(low), float(high)), str(entry["description"]))
+
+
+def _read_pair(text: str) -> tuple[float, float]:
+    melanin, hemoglobin = map(float, json.loads(text))
+    return melanin, hemoglobin
 
 
 def _with_article(kind: str) -> str:

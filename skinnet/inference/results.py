@@ -3,6 +3,8 @@
 import json
 import re
 from collections.abc import Callable, Sequence
+from concurrent.futures import ThreadPoolExecutor
+from functools import partial
 from pathlib import Path
 from typing import Any, NamedTuple
 
@@ -13,10 +15,13 @@ from skinnet.errors import InputError
 from skinnet.files import write_text, write_together
 from skinnet.images._mark import Mark
 from skinnet.images._png_file import write_png
-from skinnet.inference.decomposition import Decomposition
+from skinnet.inference.decomposition import MAP_FILES, Decomposition
 from skinnet.inference.panel import draw_panel
 
 _LEVELS = 65535
+
+_WRITERS, _STRIP = 2, 256
+"""Files that are compressed at once, and rows that are quantised at once; both bound the memory."""
 
 _PAIR_ON_LINES = re.compile(r"\[\n\s+([-+.\de]+),\n\s+([-+.\de]+)\n\s+\]")
 """Two numbers that JSON with an indent has on four lines; there are 478 such landmarks."""
@@ -67,7 +72,7 @@ def write_results(
         >>> photo, folder = astronaut(), Path(mkdtemp())
         >>> decomposition = Decomposer()(photo, detail=False)
         >>> write_results(folder, "a", photo, decomposition, decomposition.summary())
-        11
+        13
     """
     return _write_all(folder, [_Result(stem, decomposition, summary)], photo, digest)
 
@@ -95,15 +100,20 @@ def _write_result(
 ) -> None:
     stem, decomposition, summary = result
     pictures = {
-        "panel": draw_panel(photo, decomposition),
         "reconstruction": decomposition.reconstruction,
+        "panel": draw_panel(photo, decomposition),
     }
-    for name, picture in pictures.items():
-        text = Mark("predict", name, digest).to_text()
-        write_png(temporary(folder / f"{stem}_{name}.png"), picture, text)
-    for name in decomposition.maps():
-        path = temporary(folder / f"{stem}_{name}.png")
-        _write_map(path, name, decomposition, Mark("predict", "map", digest))
+    paths = {name: temporary(folder / f"{stem}_{name}.png") for name in (*pictures, *MAP_FILES)}
+    jobs = [
+        partial(write_png, paths[name], picture, Mark("predict", name, digest).to_text())
+        for name, picture in pictures.items()
+    ] + [
+        partial(_write_map, paths[name], name, decomposition, Mark("predict", "map", digest))
+        for name in MAP_FILES
+    ]
+    with ThreadPoolExecutor(_WRITERS) as pool:
+        for job in [pool.submit(job) for job in jobs]:
+            job.result()
     record = json.dumps(summary, indent=2, allow_nan=False)
     record = _PAIR_ON_LINES.sub(r"[\1, \2]", record)
     write_text(temporary(folder / f"{stem}.json"), record + "\n")
@@ -140,16 +150,24 @@ def _list_all_ends(decompositions: Sequence[Decomposition]) -> list[str]:
 
 def _list_ends(decomposition: Decomposition) -> list[str]:
     """List the ends of the names of the files that `write_results` writes."""
-    names = ("panel", "reconstruction", *decomposition.maps())
+    names = ("panel", "reconstruction", *MAP_FILES)
     return [*(f"_{name}.png" for name in names), ".json"]
 
 
 def _write_map(path: Path, name: str, decomposition: Decomposition, mark: Mark) -> None:
-    info, values = decomposition.describe_map(name), decomposition.maps()[name]
+    info, values = decomposition.describe_map(name), decomposition.get_map(name)
     low = min(info.range[0], float(values.min()))
     high = max(info.range[1], float(values.max()))
     scale = (high - low) / _LEVELS or 1.0
-    pixels = np.rint((values - low) / scale).clip(0, _LEVELS).astype(np.uint16)
+    pixels = _quantise(values, low, scale)
     text = {"scale": repr(scale), "offset": repr(low), "unit": info.unit}
     text = {"Description": info.description, "map": name} | text | mark.to_text()
     write_png(path, pixels, text)
+
+
+def _quantise(values: NDArray[np.float32], low: float, scale: float) -> NDArray[np.uint16]:
+    pixels = np.empty(values.shape, np.uint16)
+    for top in range(0, values.shape[0], _STRIP):
+        rows = slice(top, top + _STRIP)
+        pixels[rows] = np.rint((values[rows] - low) / scale).clip(0, _LEVELS)
+    return pixels

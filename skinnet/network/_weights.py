@@ -13,8 +13,9 @@ from torch import Tensor
 from skinnet._version import __version__
 from skinnet.errors import InputError
 from skinnet.files import _describe_content, _explain_format, write_atomically
+from skinnet.network._earlier_weights import EARLIER_FORMAT
 
-WEIGHTS_FORMAT = 3
+WEIGHTS_FORMAT = 4
 """Version of weights and checkpoints; increase it whenever the meaning of a weight changes."""
 
 KIND = "autoencoder"
@@ -25,13 +26,14 @@ SHIPPED_WEIGHTS = Path(__file__).parents[1] / "inference" / "models" / "skin.saf
 class SavedModel(NamedTuple):
     """What a file holds of a model: fields of its configuration, its origin, and its weights.
 
-    `version` is that of the skinnet that wrote the file, if it says so.
+    `version` is that of the skinnet that wrote the file, if it says so, and `format` the file's.
     """
 
     config: Mapping[str, Any]
     trained_on: str
     state: dict[str, Tensor]
     version: str | None = None
+    format: int = WEIGHTS_FORMAT
 
 
 def write_weights(saved: SavedModel, path: Path) -> None:
@@ -65,13 +67,13 @@ def read_weights(path: Path) -> SavedModel:
         raise InputError(f"{path} is not a complete safetensors file{what} ({error}).") from error
     if metadata.get("skinnet.kind") != KIND:
         raise InputError(f"{path} does not hold weights of skinnet; another program wrote it.")
-    if metadata.get("skinnet.format") != str(WEIGHTS_FORMAT):
+    if metadata.get("skinnet.format") not in (str(WEIGHTS_FORMAT), str(EARLIER_FORMAT)):
         found, version = metadata.get("skinnet.format"), metadata.get("skinnet.version")
         raise make_format_error(path, found, version)
     with refuse_mismatch(path, metadata.get("skinnet.version")):
         config = json.loads(metadata["skinnet.config"])
-        version = metadata.get("skinnet.version")
-        return SavedModel(config, metadata["skinnet.trained_on"], state, version)
+        version, number = metadata.get("skinnet.version"), int(metadata["skinnet.format"])
+        return SavedModel(config, metadata["skinnet.trained_on"], state, version, number)
 
 
 @contextmanager

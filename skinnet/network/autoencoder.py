@@ -1,5 +1,6 @@
 """Encoder, output activations and decoder: a photograph to skin and back."""
 
+import math
 from dataclasses import asdict, dataclass
 from pathlib import Path
 from typing import Any, NamedTuple
@@ -9,6 +10,8 @@ from jaxtyping import Float
 from kornia.color import rgb_to_linear_rgb
 from torch import Tensor, nn
 
+from skinnet.network._earlier_weights import EARLIER_FORMAT, upgrade_config, upgrade_weights
+from skinnet.network._known_capture import KNOWN_VALUES, KnownCapture
 from skinnet.network._weights import (
     SHIPPED_WEIGHTS,
     SavedModel,
@@ -22,6 +25,7 @@ from skinnet.physics.camera import CAMERA_COMPONENTS, LIGHTS
 from skinnet.physics.capture import Capture
 from skinnet.physics.decoder import SkinDecoder
 from skinnet.physics.inversion import F_BLOOD_RANGE, F_MEL_RANGE
+from skinnet.physics.srgb import to_display
 
 F_MEL_MAX = F_MEL_RANGE[1]
 """Largest melanosome volume fraction (Table 1 of Alotaibi & Smith 2017)."""
@@ -31,13 +35,20 @@ F_BLOOD_MAX = F_BLOOD_RANGE[1]
 
 SHADING_MAX = 4.0
 CAMERA_MAX = 3.0
-WHITE_BALANCE_MAX = 0.4
+WHITE_BALANCE_MAX = 0.9
+"""Largest error of the white balance that is estimated, beyond what is known of it."""
+
+LOG_SD_RANGE = 0.01, 1.5
+"""Range of the standard deviation of a pigment's natural logarithm."""
 
 _MIRED = (40.0, 250.0)
 """Range of daylight, 25,000 K to 4,000 K, in mired. Equal steps are about equally visible."""
 
-_MAP_CHANNELS = 5
-_GLOBAL_CHANNELS = len(LIGHTS) + 1 + CAMERA_COMPONENTS + 2
+_SAMPLES = 8
+"""Steps of melanin and of blood in the skin by which colours of a known capture are turned."""
+
+_MAP_CHANNELS = 7
+_GLOBAL_CHANNELS = len(LIGHTS) + 1 + CAMERA_COMPONENTS + 2 + 2
 
 
 class SkinMaps(NamedTuple):
@@ -64,33 +75,34 @@ class SkinMaps(NamedTuple):
     mask: Float[Tensor, "*batch height width"]
 
 
+class Uncertainty(NamedTuple):
+    """How uncertain the pigments are: standard deviations of their natural logarithms.
+
+    Attributes:
+        melanin: Of each pixel.
+        hemoglobin: Of each pixel.
+        face: Of the means of melanin and hemoglobin over the skin of a photograph.
+    """
+
+    melanin: Float[Tensor, "*batch height width"]
+    hemoglobin: Float[Tensor, "*batch height width"]
+    face: Float[Tensor, "*batch 2"]
+
+
 def _activate(
-    maps: Float[Tensor, "batch 5 height width"],
-    global_outputs: Float[Tensor, "batch globals"],
-    linear: Float[Tensor, "batch 3 height width"],
-) -> tuple[SkinMaps, Capture]:
-    """Map raw encoder outputs smoothly to physical ranges, in float32 at least.
+    maps: Float[Tensor, "batch 7 height width"], linear: Float[Tensor, "batch 3 height width"]
+) -> SkinMaps:
+    """Map raw maps smoothly to physical ranges, in float32 at least.
 
     Pigments are cubes of a sigmoid. Equal steps of the cube root of a fraction are about equal
     steps of colour, and both ends of the range can be reached. The offset is the photograph,
     `linear` in linear sRGB, times the probability that the pixel is not skin.
     """
-    maps, global_outputs = _at_least_float32(maps), _at_least_float32(global_outputs)
-    melanin, hemoglobin, shading, specular, mask = maps.unbind(1)
-    light, temperature, camera, balance = global_outputs.split(
-        [len(LIGHTS), 1, CAMERA_COMPONENTS, 2], -1
-    )
-    mired = _MIRED[0] + (_MIRED[1] - _MIRED[0]) * temperature.squeeze(-1).sigmoid()
-    capture = Capture(
-        light.softmax(-1),
-        1e6 / mired,
-        CAMERA_MAX * camera.tanh(),
-        WHITE_BALANCE_MAX * balance.tanh(),
-    )
+    melanin, hemoglobin, shading, specular, mask = maps[:, :5].unbind(1)
     skin = mask.sigmoid()
     # Detached: otherwise a mask without skin would have the smallest reconstruction loss.
     offset = (1 - skin.detach())[:, None] * linear
-    activated = SkinMaps(
+    return SkinMaps(
         F_MEL_MAX * melanin.sigmoid() ** 3,
         F_BLOOD_MAX * hemoglobin.sigmoid() ** 3,
         SHADING_MAX * (shading - 1.1).sigmoid(),
@@ -98,7 +110,46 @@ def _activate(
         offset,
         skin,
     )
-    return activated, capture
+
+
+def _activate_capture(
+    global_outputs: Float[Tensor, "batch globals"], white_balance_max: float
+) -> Capture:
+    """Map raw global values to a capture."""
+    light, temperature, camera, balance, _ = global_outputs.split(
+        [len(LIGHTS), 1, CAMERA_COMPONENTS, 2, 2], -1
+    )
+    mired = _MIRED[0] + (_MIRED[1] - _MIRED[0]) * temperature.squeeze(-1).sigmoid()
+    return Capture(
+        light.softmax(-1),
+        1e6 / mired,
+        CAMERA_MAX * camera.tanh(),
+        white_balance_max * balance.tanh(),
+    )
+
+
+def _activate_uncertainty(
+    maps: Float[Tensor, "batch 7 height width"],
+    global_outputs: Float[Tensor, "batch globals"],
+    scale: Float[Tensor, "2 2"],
+) -> Uncertainty:
+    """Map raw values to standard deviations, times a scale for pixels and one for faces."""
+    low, high = map(math.log, LOG_SD_RANGE)
+    pixel, face = (
+        (low + (high - low) * raw.sigmoid()).exp() for raw in (maps[:, 5:], global_outputs[:, -2:])
+    )
+    pixel, face = pixel * scale[0, :, None, None], face * scale[1]
+    melanin, hemoglobin = pixel.unbind(1)
+    return Uncertainty(melanin, hemoglobin, face)
+
+
+@torch.no_grad()
+def _sample_skin(decoder: SkinDecoder) -> Float[Tensor, "skins wavelength"]:
+    """Reflectance of skin of all tones, with little and with much blood."""
+    f_mel = torch.logspace(-2, -0.5, _SAMPLES)
+    f_blood = torch.logspace(-2, -1, _SAMPLES)
+    grid = torch.cartesian_prod(f_mel, f_blood).to(decoder.camera.mean)
+    return decoder.reflectance.bands(grid[:, 0], grid[:, 1])
 
 
 def _at_least_float32(value: Tensor) -> Tensor:
@@ -112,11 +163,13 @@ class Reading(NamedTuple):
         maps: Maps of skin.
         capture: Light and camera of each photograph.
         reconstruction: Photographs computed from maps and capture, in linear sRGB, not clipped.
+        uncertainty: How uncertain the pigments are.
     """
 
     maps: SkinMaps
     capture: Capture
     reconstruction: Float[Tensor, "batch 3 height width"]
+    uncertainty: Uncertainty
 
 
 @dataclass(frozen=True)
@@ -127,11 +180,14 @@ class AutoencoderConfig:
         optics: Name of a preset of `SkinOptics`.
         widths: Channels of the encoder at each level.
         working_size: Longer side, in pixels, of the crops that the weights are trained on.
+        white_balance_max: Largest error of the white balance that is estimated, in natural
+            logarithms, beyond what is known of it.
     """
 
     optics: str = "measured"
     widths: tuple[int, ...] = WIDTHS
     working_size: int = 128
+    white_balance_max: float = WHITE_BALANCE_MAX
 
 
 class SkinAutoencoder(nn.Module):
@@ -146,6 +202,10 @@ class SkinAutoencoder(nn.Module):
     Attributes:
         config: Configuration of the model.
         trained_on: One line on the training data, which is written into files of the model.
+        sd_scale: Factors on the standard deviations of melanin and hemoglobin, of pixels in the
+            first row and of faces in the second; they are calibrated after training.
+        region_share: Of melanin and hemoglobin: how much of the variance that pixels have beyond
+            that of the face remains in the mean of a region; calibrated after training.
 
     Source:
         Alotaibi & Smith, "BioFaceNet", BMVC 2019, for the idea of an encoder with a physical
@@ -161,12 +221,20 @@ class SkinAutoencoder(nn.Module):
         torch.Size([1, 64, 64])
     """
 
+    sd_scale: Tensor
+    region_share: Tensor
+
     def __init__(self, config: AutoencoderConfig | None = None) -> None:
         super().__init__()
         self.config = config or AutoencoderConfig()
         self.trained_on = ""
-        self.encoder = SkinEncoder(_MAP_CHANNELS, _GLOBAL_CHANNELS, self.config.widths)
+        self.encoder = SkinEncoder(
+            _MAP_CHANNELS, _GLOBAL_CHANNELS, self.config.widths, KNOWN_VALUES
+        )
         self.decoder = SkinDecoder(self.config.optics)
+        self.known = KnownCapture(self.decoder.camera, _sample_skin(self.decoder))
+        self.register_buffer("sd_scale", torch.ones(2, 2))
+        self.register_buffer("region_share", torch.ones(2))
 
     @classmethod
     def from_pretrained(cls, path: str | Path | None = None) -> "SkinAutoencoder":
@@ -189,9 +257,11 @@ class SkinAutoencoder(nn.Module):
         file = SHIPPED_WEIGHTS if path is None else Path(path)
         saved = read_weights(file) if file.suffix == ".safetensors" else _read_model(file)
         with refuse_mismatch(file, saved.version):
-            widths = tuple(saved.config["widths"])
-            model = cls(AutoencoderConfig(**{**saved.config, "widths": widths}))
-            model.load_state_dict(saved.state)
+            earlier = saved.format == EARLIER_FORMAT
+            config = upgrade_config(saved.config) if earlier else saved.config
+            model = cls(AutoencoderConfig(**{**config, "widths": tuple(config["widths"])}))
+            own = model.state_dict()
+            model.load_state_dict(upgrade_weights(saved.state, own) if earlier else saved.state)
         model.trained_on = saved.trained_on
         return model.eval()
 
@@ -222,30 +292,49 @@ class SkinAutoencoder(nn.Module):
     def _saved(self) -> SavedModel:
         return SavedModel(asdict(self.config), self.trained_on, self.state_dict())
 
-    def forward(self, photograph: Float[Tensor, "batch 3 height width"]) -> Reading:
+    def forward(
+        self, photograph: Float[Tensor, "batch 3 height width"], known: Capture | None = None
+    ) -> Reading:
         """Estimate maps and capture, and reconstruct the photographs.
 
         Args:
             photograph: Display sRGB in [0, 1].
+            known: What is known of the capture of each photograph, with None or NaN for what is
+                not; None: nothing.
 
         Returns:
-            Maps, capture and reconstruction; the reconstruction is linear sRGB.
+            Maps, capture, reconstruction and uncertainty; the reconstruction is linear sRGB.
         """
-        maps, capture = self.encode(photograph)
-        return Reading(maps, capture, self.decode(maps, capture))
+        maps, capture, uncertainty = self.encode(photograph, known)
+        return Reading(maps, capture, self.decode(maps, capture), uncertainty)
 
-    def encode(self, photograph: Float[Tensor, "batch 3 height width"]) -> tuple[SkinMaps, Capture]:
-        """Estimate maps and capture; this half may run in lower precision.
+    def encode(
+        self, photograph: Float[Tensor, "batch 3 height width"], known: Capture | None = None
+    ) -> tuple[SkinMaps, Capture, Uncertainty]:
+        """Estimate maps, capture and uncertainty; this half may run in lower precision.
+
+        A photograph whose white balance, light or camera is known is read as if it had been taken
+        with a perfect balance, under D65, by the mean camera.
 
         Args:
             photograph: Display sRGB in [0, 1].
+            known: What is known of the capture of each photograph, with None or NaN for what is
+                not; None: nothing.
 
         Returns:
-            Maps and capture.
+            Maps, capture and uncertainty. What is known of the capture is returned as it is.
         """
         linear = rgb_to_linear_rgb(photograph)
-        maps, global_outputs = self.encoder(photograph, linear)
-        return _activate(maps, global_outputs, linear)
+        given = self.known.complete(known, photograph.shape[0], linear)
+        normal = self.known.normalise(linear, given, self.decoder.camera)
+        raw = self.encoder(to_display(normal), normal, self.known.describe(given))
+        maps, global_outputs = map(_at_least_float32, raw)
+        capture = _activate_capture(global_outputs, self.config.white_balance_max)
+        return (
+            _activate(maps, linear),
+            self.known.adopt(given, capture),
+            _activate_uncertainty(maps, global_outputs, self.sd_scale),
+        )
 
     def decode(self, maps: SkinMaps, capture: Capture) -> Float[Tensor, "batch 3 height width"]:
         """Reconstruct photographs from maps and capture; this half needs float32.

@@ -18,6 +18,7 @@ from skinnet.network._weights import (
 )
 
 _PREFIX = "model."
+_CONFIG = "optics", "widths", "working_size", "white_balance_max"
 
 
 def read_checkpoint(path: str | Path) -> dict[str, Any]:
@@ -74,7 +75,7 @@ def _read_model(path: Path) -> SavedModel:
     checkpoint = read_checkpoint(path)
     description = checkpoint["skinnet"]
     with refuse_mismatch(path, description.get("version")):
-        config = {name: description[name] for name in ("optics", "widths", "working_size")}
+        config = {name: description[name] for name in _CONFIG}
         entries = checkpoint["state_dict"].items()
         state = {name.removeprefix(_PREFIX): v for name, v in entries if name.startswith(_PREFIX)}
         return SavedModel(config, description["trained_on"], state, description.get("version"))

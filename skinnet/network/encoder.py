@@ -1,7 +1,6 @@
 """The convolutional encoder: a photograph to its maps and its capture, without units yet."""
 
 from itertools import pairwise
-from typing import Any
 
 import torch
 import torch.nn.functional as F
@@ -22,23 +21,17 @@ _POOLED_COLOURS = 8
 _ATTENTION_CHANNELS = 32
 """Channels from which attention and the expected chroma are computed."""
 
+_PLACES, _PLACE_CHANNELS = 24, 128
+"""Further attention maps whose pooled colours are compared with each other, and the channels of
+that comparison."""
+
 _PIXEL_CHANNELS = 9
+
+_KNOWN_CHANNELS = 64
+"""Channels of the layer that reads what is known of the capture."""
+
 _DARKEST = 4e-3
 """Linear value that is added before a logarithm, which is infinite at zero."""
-
-_EARLIER_NAMES = {
-    "scene.": "context.",
-    "back.": "broadcast.",
-    "gather.look.": "pooling.conv.",
-    "gather.attend.": "pooling.attention.",
-    "gather.expect.": "pooling.expected_chroma.",
-    "weigh.": "refine.",
-    "globals.": "global_outputs.",
-    "balanced.": "white_balance.",
-    "head.look.": "head.conv.",
-    "head.mixed.": "head.norm.",
-}
-"""Prefixes of weights in files of version 0.1, and their present names."""
 
 
 class SkinEncoder(nn.Module):
@@ -47,8 +40,9 @@ class SkinEncoder(nn.Module):
     A U-Net works from half the photograph's resolution down, and a head works at full resolution.
     The inputs of the head are display values, linear values and their logarithms, in which pigments
     are nearly linear. It is modulated by a context vector of the whole photograph, because the
-    pigments of a colour depend on the light. A confidence-weighted vote on the light's tint is also
-    added to the global values directly. `SkinAutoencoder` maps the outputs to physical ranges.
+    pigments of a colour depend on the light. The context compares the colours of places that the
+    network attends to. A confidence-weighted vote on the light's tint is also added to the global
+    values directly. `SkinAutoencoder` maps the outputs to physical ranges.
 
     Halvings round up, and features are resized to those of the level above. So no size is padded or
     cropped.
@@ -57,6 +51,7 @@ class SkinEncoder(nn.Module):
         map_channels: Number of output maps.
         global_channels: Number of output values of the whole photograph.
         widths: Channels of the U-Net at each level, finest first.
+        known_values: Number of values that describe what is known of a capture; 0 for none.
 
     Raises:
         InputError: If `widths` is empty.
@@ -76,7 +71,11 @@ class SkinEncoder(nn.Module):
     """
 
     def __init__(
-        self, map_channels: int, global_channels: int, widths: tuple[int, ...] = WIDTHS
+        self,
+        map_channels: int,
+        global_channels: int,
+        widths: tuple[int, ...] = WIDTHS,
+        known_values: int = 0,
     ) -> None:
         super().__init__()
         if not widths:
@@ -88,6 +87,7 @@ class SkinEncoder(nn.Module):
         pairs = list(pairwise(widths))
         self.down = nn.ModuleList(_stage(fine, coarse, stride=2) for fine, coarse in pairs)
         self.context = nn.Sequential(nn.Linear(2 * deepest, deepest), nn.ReLU())
+        self.known = _make_known(known_values, deepest) if known_values else None
         self.broadcast = nn.Linear(deepest, deepest)
         self.pooling = _AttentionPooling(widths[0])
         self.refine = nn.Sequential(
@@ -95,16 +95,17 @@ class SkinEncoder(nn.Module):
             nn.ReLU(),
             nn.Linear(deepest, deepest),
         )
+        self.places = _Places(widths[0], deepest)
         self.global_outputs = nn.Linear(deepest, global_channels)
         self.white_balance = nn.Linear(2, global_channels, bias=False)
         self.up = nn.ModuleList(_Merge(coarse, fine) for fine, coarse in reversed(pairs))
         self.head = _Head(widths[0], deepest, map_channels)
-        nn.Module.register_load_state_dict_pre_hook(self, _rename_earlier_weights)
 
     def forward(
         self,
         srgb: Float[Tensor, "batch 3 height width"],
         linear: Float[Tensor, "batch 3 height width"],
+        known: Float[Tensor, "batch known_values"] | None = None,
     ) -> tuple[
         Float[Tensor, "batch map_channels height width"], Float[Tensor, "batch global_channels"]
     ]:
@@ -113,6 +114,7 @@ class SkinEncoder(nn.Module):
         Args:
             srgb: Photographs in display sRGB, in [0, 1].
             linear: The same photographs in linear sRGB.
+            known: What is known of each capture; None: nothing.
 
         Returns:
             Raw maps and raw global values, unbounded and without unit.
@@ -122,26 +124,18 @@ class SkinEncoder(nn.Module):
             features.append(stage(features[-1]))
         x = features.pop()
         context = self.context(torch.cat([x.mean((-2, -1)), x.amax((-2, -1))], 1))
+        if self.known is not None and known is not None:
+            context = context + self.known(known)
         x = x + self.broadcast(context)[..., None, None]
         for merge in self.up:
             x = merge(x, features.pop())
         log = torch.log(linear + _DARKEST)
         colours, tint = self.pooling(x, log)
         context = context + self.refine(torch.cat([context, colours, tint], 1))
+        context = context + self.places(x, log)
         pixel = torch.cat([srgb, linear, 0.5 * log], 1)
         global_outputs = self.global_outputs(context) + self.white_balance(tint)
         return self.head(pixel, x, context), global_outputs
-
-
-def _rename_earlier_weights(
-    module: nn.Module, state_dict: dict[str, Any], prefix: str, *_: object
-) -> None:
-    """Rename the weights of a file of version 0.1 in place, before they are loaded."""
-    for name in [name for name in state_dict if name.startswith(prefix)]:
-        for earlier, today in _EARLIER_NAMES.items():
-            if name.startswith(prefix + earlier):
-                rest = name.removeprefix(prefix + earlier)
-                state_dict[f"{prefix}{today}{rest}"] = state_dict.pop(name)
 
 
 class _AttentionPooling(nn.Module):
@@ -174,6 +168,34 @@ class _AttentionPooling(nn.Module):
         # precision. The tint needs more.
         colours = (weights[:, :, None] * small.flatten(2)[:, None]).sum(-1)
         return colours.flatten(1), (confidence * chroma.flatten(2)).sum(-1)
+
+
+class _Places(nn.Module):
+    """Compares the colours of places in a photograph, such as skin, the whites of eyes, and cloth.
+
+    What a face's colour says of its pigments depends on the colours around it. Nothing is added to
+    the context until this part is trained.
+    """
+
+    def __init__(self, features: int, context: int) -> None:
+        super().__init__()
+        self.conv = nn.Conv2d(features + 3, _ATTENTION_CHANNELS, 3, padding=1)
+        self.attention = nn.Conv2d(_ATTENTION_CHANNELS, _PLACES, 1)
+        last = _make_zero(_PLACE_CHANNELS, context)
+        self.compare = nn.Sequential(nn.Linear(3 * _PLACES, _PLACE_CHANNELS), nn.ReLU(), last)
+
+    def forward(
+        self,
+        features: Float[Tensor, "batch f h w"],
+        log: Float[Tensor, "batch 3 height width"],
+    ) -> Float[Tensor, "batch context"]:
+        small = F.interpolate(log, size=features.shape[-2:], mode="bilinear")
+        x = self.conv(torch.cat([features, small], 1)).relu()
+        weights = self.attention(x).flatten(2).softmax(-1).float()
+        # Sums rather than matrix products, as in `_AttentionPooling`.
+        colours = (weights[:, :, None] * small.flatten(2)[:, None]).sum(-1)
+        compared: Tensor = self.compare(colours.flatten(1))
+        return compared
 
 
 class _Head(nn.Module):
@@ -219,6 +241,20 @@ class _Merge(nn.Module):
         up = F.interpolate(self.project(coarse), size=fine.shape[-2:], mode="bilinear")
         mixed: Tensor = self.mix(up + fine)
         return mixed
+
+
+def _make_known(values: int, context: int) -> nn.Sequential:
+    """A part that adds nothing to the context until it is trained."""
+    last = _make_zero(_KNOWN_CHANNELS, context)
+    return nn.Sequential(nn.Linear(values, _KNOWN_CHANNELS), nn.ReLU(), last)
+
+
+def _make_zero(inputs: int, outputs: int) -> nn.Linear:
+    """A layer whose output is zero until it is trained."""
+    layer = nn.Linear(inputs, outputs)
+    nn.init.zeros_(layer.weight)
+    nn.init.zeros_(layer.bias)
+    return layer
 
 
 def _stage(inputs: int, outputs: int, stride: int) -> nn.Sequential:

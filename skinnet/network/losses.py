@@ -7,8 +7,18 @@ Images are linear sRGB [batch, 3, height, width], maps are [batch, height, width
 the probability that a pixel is skin.
 """
 
-from skinnet.network._means import Image, Map, Scalar, cube_root, weighted_mean
-from skinnet.network.autoencoder import F_BLOOD_MAX, F_MEL_MAX, SkinMaps
+from torch import Tensor
+
+from skinnet.network._means import (
+    Image,
+    Map,
+    Scalar,
+    cube_root,
+    log_fraction,
+    mean_over,
+    weighted_mean,
+)
+from skinnet.network.autoencoder import F_BLOOD_MAX, F_MEL_MAX, SkinMaps, Uncertainty
 from skinnet.network.priors import WHITE_BALANCE_SD
 from skinnet.physics.capture import Capture
 
@@ -243,3 +253,48 @@ def white_balance_l1(capture: Capture, truth: Capture) -> Scalar:
         1.0
     """
     return (capture.white_balance - truth.white_balance).abs().mean() / WHITE_BALANCE_SD
+
+
+def pigment_likelihood(maps: SkinMaps, uncertainty: Uncertainty, truth: SkinMaps) -> Scalar:
+    """Compute the negative log likelihood of both pigments' errors under the stated uncertainty.
+
+    The errors of the natural logarithms are normal, for each pixel of skin and for the mean over
+    the skin of a photograph. Only the uncertainty has a gradient: with the maps in it, hard
+    photographs would count less for them.
+
+    Args:
+        maps: Predicted maps.
+        uncertainty: Predicted standard deviations.
+        truth: True maps and mask.
+
+    Returns:
+        Mean over photographs and both pigments of log d + (e / d)^2 / 2, for error e and standard
+        deviation d, of pixels plus of faces.
+
+    Source:
+        Gneiting & Raftery 2007, "Strictly Proper Scoring Rules", section 4.1 (logarithmic score).
+
+    Example:
+        >>> import torch
+        >>> from skinnet.network import SkinMaps, Uncertainty, pigment_likelihood
+        >>> values = torch.full((4, 1, 8, 8), 0.05)
+        >>> mask = torch.ones(1, 8, 8)
+        >>> maps = SkinMaps(*values, torch.zeros(1, 3, 8, 8), mask)
+        >>> certain = Uncertainty(mask, mask, torch.ones(1, 2))
+        >>> pigment_likelihood(maps, certain, maps).item()
+        0.0
+    """
+    spreads = uncertainty.melanin, uncertainty.hemoglobin
+    faces = uncertainty.face.unbind(-1)
+    total = truth.mask.new_zeros(())
+    for guess, true, pixel, face in zip(maps[:2], truth[:2], spreads, faces, strict=True):
+        error = log_fraction(guess).detach() - log_fraction(true)
+        total = total + weighted_mean(_score(error, pixel), truth.mask)
+        means = (log_fraction(mean_over(one, truth.mask)) for one in (guess.detach(), true))
+        shown = (truth.mask.sum((-2, -1)) > 1).to(face)
+        total = total + (_score(next(means) - next(means), face) * shown).mean()
+    return total / 2
+
+
+def _score(error: Tensor, deviation: Tensor) -> Tensor:
+    return deviation.log() + (error / deviation) ** 2 / 2

@@ -1,5 +1,6 @@
 """The conditions under which a photograph was taken: its light and its camera."""
 
+from collections.abc import Callable
 from typing import NamedTuple
 
 import torch
@@ -10,11 +11,18 @@ from torch import Tensor
 class Capture(NamedTuple):
     """Light and camera of each photograph in a batch of any leading shape.
 
+    Rendering needs the first four. As an input of a network, None and NaN mean what is not known.
+
     Attributes:
         light: Convex weights of the lights in `LIGHTS`.
         temperature: Correlated colour temperature of the daylight among them, 4,000 to 25,000 K.
         camera: Coefficients of the camera basis, in standard deviations.
-        white_balance: Natural logarithm of the error in R/G and in B/G; zero is perfect.
+        white_balance: Natural logarithm of the error in R/G and in B/G, of the camera's balanced
+            channels; zero is perfect.
+        linear: 1 for a photograph in linear light, such as a developed RAW file without a tone
+            curve, before sRGB's own curve; otherwise 0. Rendering ignores it.
+        exposure: Natural logarithm of the luminance, in linear sRGB, that a white diffuser in the
+            light of the skin has in the photograph. Rendering ignores it.
 
     Example:
         >>> import torch
@@ -25,10 +33,13 @@ class Capture(NamedTuple):
         torch.Size([33, 3])
     """
 
-    light: Float[Tensor, "*batch lights"]
-    temperature: Float[Tensor, "*batch"]
-    camera: Float[Tensor, "*batch components"]
-    white_balance: Float[Tensor, "*batch 2"]
+    # Typed as tensors although None is allowed: all but a network's inputs are complete.
+    light: Float[Tensor, "*batch lights"] = None  # type: ignore[assignment]
+    temperature: Float[Tensor, "*batch"] = None  # type: ignore[assignment]
+    camera: Float[Tensor, "*batch components"] = None  # type: ignore[assignment]
+    white_balance: Float[Tensor, "*batch 2"] = None  # type: ignore[assignment]
+    linear: Float[Tensor, "*batch"] | None = None
+    exposure: Float[Tensor, "*batch"] | None = None
 
     def expand(self, batch: tuple[int, ...], dtype: torch.dtype) -> "Capture":
         """Repeat the capture for every photograph of a batch.
@@ -41,9 +52,19 @@ class Capture(NamedTuple):
             The capture, with `batch` as its leading axes.
         """
         leading = self.temperature.ndim
-        return Capture(
-            *(value.to(dtype).expand((*batch, *value.shape[leading:])) for value in self)
-        )
+        return self.map(lambda value: value.to(dtype).expand((*batch, *value.shape[leading:])))
+
+    def map(self, function: Callable[[Tensor], Tensor]) -> "Capture":
+        """Apply a function to every tensor; what is None stays None.
+
+        Args:
+            function: Function of one tensor.
+
+        Returns:
+            The capture of its results.
+        """
+        parts = {name: value for name, value in self._asdict().items() if value is not None}
+        return Capture(**{name: function(value) for name, value in parts.items()})
 
     @staticmethod
     def standard(

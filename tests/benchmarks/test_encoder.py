@@ -13,6 +13,7 @@ from skimage.data import astronaut
 
 from benchmarks import disturbances, encoder, portraits, targets
 from benchmarks.baselines import Lookup, Tsumura
+from benchmarks.coverage import Coverage
 from benchmarks.pictures import Pictures, Pixels, render_under_daylight
 from benchmarks.reader import NetworkReader, compose
 from benchmarks.running_statistics import RunningStatistics
@@ -40,8 +41,44 @@ def found(model: SkinAutoencoder, tmp_path_factory: pytest.TempPathFactory) -> d
     geometry = tmp_path_factory.mktemp("geometry")
     return encoder.measure(
         encoder.TestSet(**TINY, optics=model.config.optics, geometry=str(geometry)),
-        {"stage2": model},
+        {"stage2": model, "fourth": model},
     )
+
+
+def test_shipped_and_fourth_are_measured_in_each_kind_of_captures(found: dict[str, Any]) -> None:
+    for row in ("wide", "known", "mild", "any"):
+        own = {"blind"} if row == "mild" else set()
+        intervals = {"coverage", "coverage_pixels", "stated_sd"}
+        assert set(found[row]) == {"melanin", "hemoglobin", *COLUMNS, *intervals, *own}
+        assert 0 <= found[row]["coverage"]["melanin"]["all"] <= 1
+        assert set(found[row]["coverage"]["hemoglobin"]["groups"]) <= set(GROUPS)
+    assert found["mild"]["blind"]["melanin"] == found["stage2"]["melanin"]
+    assert found["wide"]["melanin"] != found["known"]["melanin"]
+    assert set(found["fourth"]) == {"wide", "mild"}
+    assert set(found["fourth"]["wide"]) == {"melanin", "hemoglobin", "mask_iou"}
+
+
+def test_coverage_counts_what_lies_inside(skins: Pictures) -> None:
+    rng = torch.Generator().manual_seed(0)
+    melanin, hemoglobin = (
+        value * (0.2 * torch.randn(len(value), generator=rng)).exp() for value in skins.truth[:2]
+    )
+    guess = skins.truth._replace(
+        melanin=melanin,
+        hemoglobin=hemoglobin,
+        sd=torch.full((len(melanin), 2), 0.2) * torch.tensor([1.0, 1e-3]),
+        face_sd=torch.tensor([[1.0, 1e-9]]).expand(6, 2),
+    )
+    coverage = Coverage()
+    coverage.add(skins.truth, skins)
+    coverage.add(guess, skins)
+    found = coverage.compute_results()
+    assert found["coverage"]["melanin"]["all"] == 1 and found["coverage"]["hemoglobin"]["all"] == 0
+    assert found["coverage_pixels"]["melanin"]["all"] == pytest.approx(0.9, abs=0.08)
+    assert found["coverage_pixels"]["hemoglobin"]["all"] < 0.05
+    assert list(found["coverage"]["melanin"]["groups"]) == [
+        name for name in GROUPS if name in {find_group(angle) for angle in skins.angle.tolist()}
+    ]
 
 
 @pytest.fixture(scope="module")
@@ -73,11 +110,11 @@ def test_results_have_the_agreed_keys(found: dict[str, Any]) -> None:
 def test_the_printed_table_has_a_line_for_each_column_with_its_target(
     found: dict[str, Any],
 ) -> None:
-    lines = {
-        line.split()[0]: line.split() for line in targets.format_table(found).splitlines() if line
-    }
+    first, *_, captures, _ = targets.format_table(found).split("\n\n")
+    lines = {line.split()[0]: line.split() for line in first.splitlines()}
     assert lines["melanin.r_image"][-2:] == [">=", "0.98"]
     assert lines["diffuse"][4] == "-" and len(lines["diffuse"]) == 6
+    assert "coverage.melanin.all" in captures and ">= 0.70" in captures
 
 
 def test_perfect_predictions_have_no_error(skins: Pictures) -> None:

@@ -6,6 +6,7 @@ import subprocess
 import sys
 from pathlib import Path
 
+import numpy as np
 import onnx
 import onnxruntime
 import pytest
@@ -15,7 +16,8 @@ from safetensors import safe_open
 from safetensors.torch import save_file
 
 from export.__main__ import main
-from skinnet.inference import SHIPPED_ENCODER, open_model
+from export.graphs import KNOWN, OUTPUTS, EncoderGraph, describe_outputs, make_example, make_known
+from skinnet.inference import CAPTURE_NAMES, MAP_NAMES, SHIPPED_ENCODER, open_model
 from skinnet.network import AutoencoderConfig, SkinAutoencoder
 from skinnet.network._weights import WEIGHTS_FORMAT
 
@@ -28,6 +30,10 @@ def exported(tmp_path_factory: pytest.TempPathFactory) -> Path:
     torch.manual_seed(0)
     model = SkinAutoencoder(AutoencoderConfig(widths=(8, 12, 16), working_size=48))
     model.trained_on = "nothing at all"
+    for name, weights in model.named_parameters():
+        if name.startswith("encoder.known"):  # their last layer begins at 0, without an effect
+            torch.nn.init.normal_(weights, std=0.3)
+    model.region_share.copy_(torch.tensor([0.25, 0.5]))
     model.save_pretrained(folder / "start.safetensors")
     # A process of its own: the checks of shapes under pytest would fix the batch in the graph.
     command = [sys.executable, "-m", "export", "start.safetensors", "-o", "skin.onnx"]
@@ -58,6 +64,7 @@ def test_a_file_is_complete_and_has_its_metadata(exported: Path, name: str) -> N
     assert all({"unit", "range", "description"} <= set(output) for output in outputs.values())
     assert message["skinnet.working_size"] == "48" and message["skinnet.license"] == "MIT"
     assert message["skinnet.trained_on"] == "nothing at all"
+    assert json.loads(message["skinnet.region_share"]) == [0.25, 0.5]
 
 
 @pytest.mark.parametrize("name", ["skin.onnx", "skin.decoder.onnx"])
@@ -93,11 +100,58 @@ def test_encoder_and_decoder_make_the_reconstruction_of_torch(exported: Path) ->
     decoder = onnxruntime.InferenceSession(exported.with_suffix(".decoder.onnx"))
     names = [output.name for output in encoder.get_outputs()]
     maps = dict(zip(names, encoder.run(None, {"image": photograph.numpy()}), strict=True))
-    del maps["mask"]
-    (image,) = decoder.run(None, maps)
+    inputs = {name: maps[name] for name in (*MAP_NAMES, *CAPTURE_NAMES)}
+    (image,) = decoder.run(None, inputs)
     with torch.no_grad():
         expected = to_display(model(photograph.movedim(-1, 1) / 255).reconstruction).movedim(1, -1)
     assert abs(image - expected.numpy()).max() < 1e-3
+
+
+def test_what_is_known_may_be_left_out_or_given_once_or_for_each(exported: Path) -> None:
+    session = onnxruntime.InferenceSession(exported)
+    assert [given.name for given in session.get_inputs()] == ["image"]
+    assert [given.name for given in session.get_overridable_initializers()] == list(KNOWN)
+    photographs = {"image": make_example(3, 37, 53).numpy()}
+    unknown, known = (
+        {name: value.numpy() for name, value in make_known(3, is_known).items()}
+        for is_known in (False, True)
+    )
+    once = {name: value[:1] for name, value in known.items()}
+    each = {name: value[:1].repeat(3, 0) for name, value in known.items()}
+    blind, nan, one, many, other = (
+        session.run(None, photographs | feed) for feed in ({}, unknown, once, each, known)
+    )
+    for name, *values in zip(OUTPUTS, blind, nan, one, many, other, strict=True):
+        assert np.array_equal(values[0], values[1]) and np.array_equal(values[2], values[3]), name
+        assert np.array_equal(values[3][0], values[4][0]), name
+        assert not np.array_equal(values[0], values[3]) or "sd" in name, name
+        assert not np.array_equal(values[3][1:], values[4][1:]) or "sd" in name, name
+
+
+@pytest.mark.parametrize("name", KNOWN)
+def test_each_part_that_is_known_is_that_of_torch(exported: Path, name: str) -> None:
+    model = SkinAutoencoder.from_pretrained(exported.with_suffix(".safetensors"))
+    photograph, known = make_example(2, 40, 50), {name: make_known(2)[name]}
+    session = onnxruntime.InferenceSession(exported)
+    found, blind = (
+        session.run(None, {"image": photograph.numpy(), **feed})
+        for feed in ({name: known[name].numpy()}, {})
+    )
+    with torch.no_grad():
+        expected = EncoderGraph(model)(photograph, **(make_known(2, False) | known))
+    for output, value, right in zip(OUTPUTS.values(), found, expected, strict=True):
+        low, high = output["range"]
+        np.testing.assert_allclose(value, right, rtol=0, atol=3e-4 * (high - low))
+    assert not np.array_equal(found[0], blind[0])
+
+
+def test_ranges_of_standard_deviations_are_those_of_the_model() -> None:
+    model = SkinAutoencoder(AutoencoderConfig(widths=(4, 8)))
+    model.sd_scale.copy_(torch.tensor([[1.0, 2.0], [0.5, 3.0]]))
+    described = describe_outputs(model)
+    assert described["hemoglobin_sd"]["range"] == pytest.approx([0.02, 3.0])
+    assert described["face_sd"]["range"] == pytest.approx([0.005, 4.5])
+    assert described["melanin_sd"]["range"] == OUTPUTS["melanin_sd"]["range"]
 
 
 def test_outputs_lie_in_their_stated_ranges(exported: Path) -> None:

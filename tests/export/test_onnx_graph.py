@@ -71,6 +71,20 @@ def resize() -> ModelProto:
     return model
 
 
+def missing() -> ModelProto:
+    """NaN by 0, and 1 more in the rows of pixels of which any is NaN."""
+    nodes = [
+        helper.make_node("IsNaN", ["x"], ["no"]),
+        helper.make_node("Where", ["no", "zero", "x"], ["filled"]),
+        helper.make_node("Cast", ["no"], ["number"], to=TensorProto.INT64),
+        helper.make_node("ReduceMax", ["number", "last"], ["most"], keepdims=1),
+        helper.make_node("Cast", ["most"], ["any"], to=TensorProto.BOOL),
+        helper.make_node("Cast", ["any"], ["flag"], to=TensorProto.FLOAT),
+        helper.make_node("Add", ["filled", "flag"], ["y"]),
+    ]
+    return make_model(nodes, SHAPE, {"zero": np.float32(0), "last": np.array([3])})
+
+
 CASES = {
     "maximum": (maximum(0, [-2, -1]), {"GlobalMaxPool", "Squeeze"}),
     "maximum, axes kept": (maximum(1, [2, 3]), {"GlobalMaxPool"}),
@@ -80,6 +94,7 @@ CASES = {
     "small factor": (product(300.0), {"Mul"}),
     "ellipsis": (einsum("...w,wk->...k"), {"Einsum"}),
     "letters": (einsum("bchw,wk->bchk"), {"Einsum"}),
+    "missing values": (missing(), {"IsNaN", "ThresholdedRelu", "Cast", "ReduceSum", "Add"}),
     "resize": (resize(), {"MaxPool", "Relu", "Shape", "Concat", "Resize", "Add"}),
 }
 
@@ -88,6 +103,8 @@ CASES = {
 def test_a_finished_graph_computes_the_same(case: str) -> None:
     model, operators = CASES[case]
     x = RNG.normal(size=(2, 3, 5, 4)).astype(np.float32)
+    if case == "missing values":
+        x[:, :, 1:3, ::2] = np.nan
     before = run(model, x)
     done = ModelProto.FromString(model.SerializeToString())
     finish(done)

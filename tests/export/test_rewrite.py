@@ -43,8 +43,12 @@ def test_a_file_of_an_earlier_export_is_mended(
     assert "the same outputs to the bit" in capsys.readouterr().out
     names = {value.name for value in onnx.load(copy).graph.value_info}
     assert not names & {value.name for value in stale}
-    weights = [numpy_helper.to_array(t) for t in onnx.load(copy).graph.initializer]
-    assert all(map(np.array_equal, weights, map(numpy_helper.to_array, model.graph.initializer)))
+    before, after = (
+        [numpy_helper.to_array(tensor) for tensor in one.graph.initializer]
+        for one in (model, onnx.load(copy))
+    )
+    for old, new in zip(before, after, strict=True):
+        np.testing.assert_array_equal(old, new)
 
 
 def test_a_changed_output_leaves_all_files_as_they_are(

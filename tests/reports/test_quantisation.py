@@ -22,11 +22,12 @@ from skimage.data import astronaut
 
 from export.quantisation import halve, quantise_dynamically, quantise_statically
 from skinnet import Decomposer
-from skinnet.inference import SHIPPED_ENCODER, open_model
+from skinnet.inference import CAPTURE_NAMES, MAP_NAMES, SHIPPED_ENCODER, Capture, open_model
 from skinnet.inference._onnx_pair import get_decoder_path
 
 Feeds = list[dict[str, np.ndarray]]
 CROPS = (np.s_[:160, 140:300], np.s_[:200:2, 120:300:2], np.s_[10:131, 160:280])
+KNOWN = Capture({"D": 1.0}, 5500.0, white_balance=(0.1, -0.08), linear=False)
 FILES = {"encoder": SHIPPED_ENCODER, "decoder": get_decoder_path(SHIPPED_ENCODER)}
 
 
@@ -51,7 +52,7 @@ def _quiet(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Iterator[None]:
 def feeds() -> dict[str, Feeds]:
     images = [{"image": np.ascontiguousarray(astronaut()[crop])[None]} for crop in CROPS]
     outputs = [open_model(SHIPPED_ENCODER, "encoder", 1).run(image) for image in images]
-    maps = [{name: value for name, value in one.items() if name != "mask"} for one in outputs]
+    maps = [{name: one[name] for name in (*MAP_NAMES, *CAPTURE_NAMES)} for one in outputs]
     return {"encoder": images, "decoder": maps}
 
 
@@ -132,6 +133,7 @@ def test_a_file_is_quantised_and_opens(
         assert target.stat().st_size < 0.4 * FILES[kind].stat().st_size
 
 
+@pytest.mark.parametrize("capture", [None, KNOWN], ids=["nothing known", "known"])
 @pytest.mark.parametrize(
     ("way", "bound"),
     [
@@ -143,17 +145,24 @@ def test_a_file_is_quantised_and_opens(
     ids=["half", "dynamic", "dynamic uint8", "static"],
 )
 def test_a_quantised_pair_reads_nearly_the_same_pigments(
-    way: Callable[[Path, Path, Feeds], None], bound: float, feeds: dict[str, Feeds], tmp_path: Path
+    way: Callable[[Path, Path, Feeds], None],
+    bound: float,
+    capture: Capture | None,
+    feeds: dict[str, Feeds],
+    tmp_path: Path,
 ) -> None:
     model = tmp_path / "skin.small.onnx"
     way(SHIPPED_ENCODER, model, feeds["encoder"])
     get_decoder_path(model).write_bytes(FILES["decoder"].read_bytes())
     if bound > 0.002:
         way(FILES["decoder"], get_decoder_path(model), feeds["decoder"])
-    before, after = (Decomposer(path, 1)(astronaut(), detail=False) for path in (None, model))
+    before, after = (
+        Decomposer(path, 1)(astronaut(), detail=False, capture=capture) for path in (None, model)
+    )
     skin = before.mask > 0.5
     for pigment in ("melanin", "hemoglobin"):
         old, new = (getattr(one, pigment)[skin].mean() for one in (before, after))
         assert new == pytest.approx(old, rel=bound)
-    assert after.model == before.model
+    assert after.model == before.model and after.capture_known == before.capture_known
+    assert after.uncertainty.face == pytest.approx(before.uncertainty.face, rel=2 * bound)
     assert after.light["temperature_k"] == pytest.approx(before.light["temperature_k"], rel=0.02)

@@ -20,6 +20,7 @@ from skinnet.appearance.stack_writer import write_stack
 
 LIGHTS = ("D", "A")
 MAPS = ("melanin", "hemoglobin", "shading", "specular", "mask")
+SDS = ("melanin_sd", "hemoglobin_sd", "face_sd")
 OUTPUTS = {
     "melanin": ("melanosome volume fraction", 0.0, 0.6),
     "hemoglobin": ("blood volume fraction", 0.0, 0.3),
@@ -27,14 +28,18 @@ OUTPUTS = {
     "specular": ("relative to the light", 0.0, 1.0),
     "mask": ("probability", 0.0, 1.0),
     "offset": ("linear sRGB", -1.0, 1.0),
+    "melanin_sd": ("natural logarithm", 0.0, 1.0),
+    "hemoglobin_sd": ("natural logarithm", 0.0, 1.0),
+    "face_sd": ("natural logarithm", 0.0, 1.0),
 }
 METADATA = {
-    "format": "1",
+    "format": "2",
     "version": "0.1.0",
     "trained_on": "nothing",
     "optics": "paper",
     "license": "MIT",
     "working_size": "64",
+    "region_share": "[0.25, 0.5]",
     "lights": json.dumps(LIGHTS),
     "outputs": json.dumps(
         {
@@ -90,7 +95,7 @@ def save_models(path: Path, skin_from: float = 0.5, **metadata: str | None) -> P
 
 
 def encoder_graph(skin_from: float) -> onnx.GraphProto:
-    """Maps that are simple functions of a pixel; light and camera are constants."""
+    """Maps that are simple functions of a pixel; light and camera are constants, if not known."""
     nodes = [
         helper.make_node("Cast", ["image"], ["float"], to=TensorProto.FLOAT),
         helper.make_node("Div", ["float", "white"], ["unit"]),
@@ -103,7 +108,17 @@ def encoder_graph(skin_from: float) -> onnx.GraphProto:
         helper.make_node("Add", ["grey", "fifth"], ["shading"]),
         helper.make_node("Mul", ["hemoglobin", "fifth"], ["specular"]),
         helper.make_node("Mul", ["unit", "fifth"], ["offset"]),
-        *(helper.make_node("Identity", [f"the_{name}"], [name]) for name in CAPTURE),
+        helper.make_node("Identity", ["grey"], ["melanin_sd"]),
+        helper.make_node("Mul", ["grey", "fifth"], ["hemoglobin_sd"]),
+        helper.make_node("Identity", ["the_face_sd"], ["face_sd"]),
+        *(
+            helper.make_node(*node)
+            for name in CAPTURE
+            for node in (
+                ("IsNaN", [f"known_{name}"], [f"no_{name}"]),
+                ("Where", [f"no_{name}", f"the_{name}", f"known_{name}"], [name]),
+            )
+        ),
     ]
     constants = {
         "white": np.float32(255),
@@ -111,10 +126,19 @@ def encoder_graph(skin_from: float) -> onnx.GraphProto:
         "first": np.array(0),
         "skin_from": np.float32(skin_from),
         "fifth": np.float32(0.2),
+        "the_face_sd": FACE_SD,
     } | {f"the_{name}": value for name, value in CAPTURE.items()}
+    known = {f"known_{name}": np.full_like(value, np.nan) for name, value in CAPTURE.items()}
+    known |= {f"known_{name}": np.full(1, np.nan, np.float32) for name in ("linear", "exposure")}
     outputs = [value_info(name) for name in (*OUTPUTS, *CAPTURE)]
     image = helper.make_tensor_value_info("image", TensorProto.UINT8, ["batch", "h", "w", 3])
-    return helper.make_graph(nodes, "encoder", [image], outputs, initializers(constants))
+    inputs = [
+        helper.make_tensor_value_info(name, TensorProto.FLOAT, ["known", *value.shape[1:]])
+        for name, value in known.items()
+    ]
+    return helper.make_graph(
+        nodes, "encoder", [image, *inputs], outputs, initializers(constants | known)
+    )
 
 
 CAPTURE = {
@@ -123,6 +147,7 @@ CAPTURE = {
     "camera": np.array([[0.5, -0.5, 0.0]], np.float32),
     "white_balance": np.log(np.array([[1.02, 0.97]], np.float32)),
 }
+FACE_SD = np.array([[0.1, 0.2]], np.float32)
 
 
 def decoder_graph() -> onnx.GraphProto:
@@ -149,7 +174,7 @@ def decoder_graph() -> onnx.GraphProto:
         "zero": np.float32(0),
         "one": np.float32(1),
     }
-    names = [name for name in (*OUTPUTS, *CAPTURE) if name != "mask"]
+    names = [name for name in (*OUTPUTS, *CAPTURE) if name not in ("mask", *SDS)]
     image = helper.make_tensor_value_info("image", TensorProto.FLOAT, ["batch", "h", "w", 3])
     return helper.make_graph(
         nodes, "decoder", [value_info(n) for n in names], [image], initializers(constants)
@@ -157,7 +182,11 @@ def decoder_graph() -> onnx.GraphProto:
 
 
 def value_info(name: str) -> onnx.ValueInfoProto:
-    axes: dict[str, list[Any]] = {"offset": ["batch", "h", "w", 3], "temperature": ["batch"]}
+    axes: dict[str, list[Any]] = {
+        "offset": ["batch", "h", "w", 3],
+        "temperature": ["batch"],
+        "face_sd": ["batch", 2],
+    }
     shape = ["batch", f"{name}s"] if name in CAPTURE else ["batch", "h", "w"]
     return helper.make_tensor_value_info(name, TensorProto.FLOAT, axes.get(name, shape))
 

@@ -14,7 +14,8 @@ from skinnet import __version__, cli
 from skinnet.cli import main
 
 MAPS = [
-    *("hemoglobin", "mask", "melanin", "offset_b", "offset_g", "offset_r", "shading", "specular")
+    *("hemoglobin", "mask", "melanin", "offset_b", "offset_g", "offset_r", "shading", "specular"),
+    *("hemoglobin_sd", "melanin_sd"),
 ]
 FILES = sorted([*(f"a_{name}.png" for name in (*MAPS, "panel", "reconstruction")), "a.json"])
 
@@ -54,7 +55,7 @@ def test_predict_writes_beside_the_photograph(
     assert names(photo.parent / "skinmaps") == FILES
     out, err = capsys.readouterr()
     assert (
-        out.startswith(f"{photo}: melanin 0.0") and "11 files" in out and len(out.split("\n")) == 2
+        out.startswith(f"{photo}: melanin 0.0") and "13 files" in out and len(out.split("\n")) == 2
     )
     assert err == ""
 

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 import torch
 
-from skinnet.network import Reading, SkinMaps
+from skinnet.network import Reading, SkinMaps, Uncertainty
 from skinnet.physics import SpectralCamera
 from train.batch import Batch
 from train.metrics import ReadingMetrics
@@ -22,7 +22,7 @@ def batch_of(count: int, skin: float, seed: int) -> tuple[Reading, Batch]:
     mask = (mask < skin).float()
     photograph, made = torch.rand(2, count, 3, 8, 8, generator=rng)
     capture = SpectralCamera().standard((count,))
-    reading = Reading(maps(guess), capture, 1.5 * made)
+    reading = Reading(maps(guess), capture, 1.5 * made, Uncertainty(guess, guess, guess[:, 0, :2]))
     return reading, Batch(photograph, mask, maps(mask), capture)
 
 

@@ -6,7 +6,7 @@ import pytest
 import torch
 from torch.optim.lr_scheduler import CosineAnnealingLR, LinearLR, LRScheduler, SequentialLR
 
-from train.batch import Batch
+from train.batch import Batch, People
 from train.task import LossWeights, SkinTask, compute_losses, warm_up_and_anneal
 
 Make = Callable[[int], Batch]
@@ -29,8 +29,11 @@ def test_a_few_steps_lower_the_loss(batch: Make) -> None:
 def test_every_loss_has_a_weight_and_every_weight_a_loss(batch: Make) -> None:
     task, data = SkinTask(widths=[4, 8]), batch(2)
     without = Batch(data.photograph, data.mask, paired=True)
-    found = [set(compute_losses(task(data.photograph), one)) for one in (data, without)]
-    assert found[0] | found[1] == set(LossWeights.__dataclass_fields__)
+    reading = task(data.photograph)
+    found = [set(compute_losses(reading, one)) for one in (data, without)]
+    people = People(torch.ones_like(data.mask).long(), torch.zeros(2, 3))
+    found.append(set(task._compare_people(reading, without, people)))
+    assert set.union(*found) == set(LossWeights.__dataclass_fields__)
 
 
 def test_photographs_without_truth_have_no_supervised_losses(batch: Make) -> None:
@@ -38,7 +41,7 @@ def test_photographs_without_truth_have_no_supervised_losses(batch: Make) -> Non
     found = compute_losses(task(data.photograph), Batch(data.photograph, data.mask))
     known = {
         *("mask", "soft_iou", "pigment_l1", "pigment_mse", "error_shading_covariance"),
-        *("lighting", "white_balance"),
+        *("lighting", "white_balance", "uncertainty"),
     }
     assert known.isdisjoint(found)
 

@@ -9,7 +9,7 @@ import torch
 from lightning import Callback, LightningModule, Trainer
 from torch import Tensor, distributed, nn
 
-from skinnet.network import Reading, SkinMaps
+from skinnet.network import Reading, SkinMaps, Uncertainty
 from skinnet.physics import SpectralCamera
 from train.batch import Batch
 from train.metrics import ReadingMetrics
@@ -96,7 +96,9 @@ def measure(seeds: Sequence[int]) -> dict[str, float]:
         )
         photograph, made = torch.rand(2, count, 3, 8, 8, generator=rng)
         capture = SpectralCamera().standard((count,))
-        metrics.update(Reading(guess, capture, made), Batch(photograph, truth.mask, truth, capture))
+        spread = Uncertainty(guess.melanin, guess.hemoglobin, torch.ones(count, 2))
+        reading = Reading(guess, capture, made, spread)
+        metrics.update(reading, Batch(photograph, truth.mask, truth, capture))
     return {name: metric.compute().item() for name, metric in metrics.metrics.items()}
 
 

@@ -24,7 +24,7 @@ from train.synthetic.sampling.model_skins import ModelSkins, apply_model_skin, l
 from train.synthetic.sampling.scene_sampling import Person, meter_skin, sample_person, sample_scene
 from train.synthetic.sampling.style_sampling import fit_long_beard
 from train.synthetic.scene import FaceParameters, HeadBuffers, SceneParameters, map_tensors
-from train.synthetic.variety import Variety
+from train.synthetic.variety import Captures, Variety
 
 STAGES = {"fit": ("train", "val"), "validate": ("val",), "test": ("test",)}
 """Splits whose heads a stage of training needs."""
@@ -50,6 +50,7 @@ class SyntheticScenes(Dataset[SceneParameters]):
         measured: Blood and nuisance of measured skins; None: blood is uniform in its logarithm, and
             all skins are those of the preset.
         variety: Which kind of faces; the heads must be of the same.
+        captures: Which kind of lights and cameras.
     """
 
     def __init__(
@@ -62,8 +63,9 @@ class SyntheticScenes(Dataset[SceneParameters]):
         domain_randomised: bool = False,
         measured: MeasuredSkins | None = None,
         variety: Variety = "mild",
+        captures: Captures = "mild",
     ) -> None:
-        self.variety = variety
+        self.variety, self.captures = variety, captures
         self.heads, self.samples, self.skins = heads, samples, skins
         self.measured = measured
         self.domain_randomised = domain_randomised
@@ -77,7 +79,7 @@ class SyntheticScenes(Dataset[SceneParameters]):
         head = map_tensors(lambda values: values[number], self.heads)
         key = [*self.key, index]
         rng = np.random.default_rng(key)
-        scene = sample_scene(rng, head, self.domain_randomised, self.variety)
+        scene = sample_scene(rng, head, self.domain_randomised, self.variety, self.captures)
         scene = scene._replace(face=self._measure(scene.face, key))
         return scene if self.variety == "mild" else self._add_paintings(scene, key)
 
@@ -141,6 +143,10 @@ class SyntheticFaces(LightningDataModule):
         workers: Processes that cast heads and sample scenes; 0 does both in the training process.
         variety: `mild` for one nearly upright face a picture, or `any` for faces and skin as people
             photograph them.
+        captures: `mild` for careful cameras in white light, or `wide` for the lights, cameras and
+            processing of photographs by anybody.
+        portrait_heads: Heads of `mild` geometry, upright and framed as portraits, in the training
+            set besides `heads` of the variety `any`.
     """
 
     def __init__(
@@ -160,6 +166,8 @@ class SyntheticFaces(LightningDataModule):
         seed: NonNegativeInt = 0,
         workers: NonNegativeInt = 0,
         variety: Variety = "mild",
+        captures: Captures = "mild",
+        portrait_heads: NonNegativeInt = 0,
     ) -> None:
         super().__init__()
         self.size, self.batch_size = size, batch_size
@@ -168,6 +176,8 @@ class SyntheticFaces(LightningDataModule):
         self.ict = None if ict is None else Path(ict)
         self.geometry, self.seed, self.workers = Path(geometry), seed, workers
         self.variety: Variety = variety
+        self.captures: Captures = captures
+        self.portrait_heads = portrait_heads
         self.skins_file = None if skins is None else Path(skins)
         self.skins: ModelSkins | None = None
         self.optics = optics
@@ -190,6 +200,10 @@ class SyntheticFaces(LightningDataModule):
         kind = "procedural heads" if self.ict is None else "ICT-FaceKit and procedural heads"
         if self.variety != "mild":
             kind = f"scenes of {kind} of the variety {self.variety}"
+        if self.portrait_heads:
+            kind = f"{kind} and {self.portrait_heads} portraits"
+        if self.captures != "mild":
+            kind = f"{kind} in {self.captures} captures"
         heads = f"{self.heads['train']} {kind} of skinnet's synthetic renderer"
         text = f"{heads}, seed {self.seed}, {self.size} px"
         return text if self.skins_file is None else f"{text}, half with skins of {self.skins_file}"
@@ -214,9 +228,19 @@ class SyntheticFaces(LightningDataModule):
                 self.buffers[split] = self._load_heads(split).to_buffers()
 
     def _load_heads(self, split: str) -> HeadCast:
-        count, workers = self.heads[split], max(self.workers, 1)
+        own = self._load_or_cast(split, self.heads[split], self.variety)
+        if split != "train" or not self.portrait_heads:
+            return own
+        portraits = self._load_or_cast(split, self.portrait_heads, "mild")
+        # Heads are used in turn, and every batch should have both kinds.
+        order = np.random.default_rng(self.seed).permutation(len(own.label) + len(portraits.label))
+        return HeadCast(*(np.concatenate(pair)[order] for pair in zip(own, portraits, strict=True)))
+
+    def _load_or_cast(self, split: str, count: int, variety: Variety) -> HeadCast:
         return load_or_cast_heads(
-            self.geometry, self.size, count, split, self.seed, self.ict, workers, self.variety
+            *(self.geometry, self.size, count, split, self.seed, self.ict),
+            workers=max(self.workers, 1),
+            variety=variety,
         )
 
     def train_dataloader(self) -> StreamLoader:
@@ -235,6 +259,7 @@ class SyntheticFaces(LightningDataModule):
             True,
             self.measured,
             self.variety,
+            self.captures,
         )
         seen = partial(count_seen_samples, trainer, self.batch_size)
         return StreamLoader(
@@ -267,6 +292,7 @@ class SyntheticFaces(LightningDataModule):
             self.skins,
             measured=self.measured,
             variety=self.variety,
+            captures=self.captures,
         )
         return DataLoader(
             scenes, self.batch_size, num_workers=self.workers, collate_fn=COLLATE[self.variety]

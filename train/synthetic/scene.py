@@ -17,6 +17,9 @@ CHART_SIZE = (168, 208)
 REGIONS = 6
 MOLES = 6
 LAMPS = 3
+SOURCES = 1 + LAMPS
+"""The sky and the lamps."""
+
 MIXTURE = len(LIGHTS)
 GARMENTS = 3
 """Cloth with colours of its own: headwear, face masks and scarves."""
@@ -223,7 +226,8 @@ class LightParameters(NamedTuple):
 
     `sky` holds coefficients of nine spherical harmonics, `lamps` unit directions in the camera's
     axes, `strength` their irradiance, `softness` the half widths of the lamps in radians. `mixture`
-    holds weights of the light sources `LIGHTS`, `temperature` that of daylight in kelvin.
+    holds weights of the light sources `LIGHTS`, `temperature` that of daylight in kelvin. `tints`
+    are log factors on linear sRGB of the sky, in the first row, and of each lamp.
     """
 
     sky: Float[Tensor, "*batch 9"]
@@ -232,6 +236,42 @@ class LightParameters(NamedTuple):
     softness: Float[Tensor, "*batch {LAMPS}"]
     mixture: Float[Tensor, "*batch {MIXTURE}"]
     temperature: Float[Tensor, "*batch"]
+    tints: Float[Tensor, "*batch {SOURCES} 3"]
+
+
+class ProcessingParameters(NamedTuple):
+    """What is done to a photograph after its tone curve; all is zero for mild captures.
+
+    `flare` is linear light that is added everywhere. `saturation` is a log factor on the distance
+    from grey, and `toning` holds log factors on R, G and B of shadows, in the first row, and of
+    highlights. `reduction` is the natural logarithm by which the picture was once smaller, and
+    `sharpening` the share of fine detail that is added.
+    """
+
+    flare: Float[Tensor, "*batch"]
+    saturation: Float[Tensor, "*batch"]
+    toning: Float[Tensor, "*batch 2 3"]
+    reduction: Float[Tensor, "*batch"]
+    sharpening: Float[Tensor, "*batch"]
+
+
+class KnownParameters(NamedTuple):
+    """What a network may know of a capture: 1 for what it knows, otherwise 0.
+
+    `white` is the colour of a white or grey reference, of the given `reflectance`, and `exposure`
+    its brightness. `white_error` is the error of its log R/G and log B/G, and `light_error` the log
+    factor on the light that falls on it instead of on the skin.
+    """
+
+    white: Float[Tensor, "*batch"]
+    light: Float[Tensor, "*batch"]
+    temperature: Float[Tensor, "*batch"]
+    camera: Float[Tensor, "*batch"]
+    linear: Float[Tensor, "*batch"]
+    exposure: Float[Tensor, "*batch"]
+    reflectance: Float[Tensor, "*batch"]
+    white_error: Float[Tensor, "*batch 2"]
+    light_error: Float[Tensor, "*batch"]
 
 
 class CameraParameters(NamedTuple):
@@ -242,7 +282,9 @@ class CameraParameters(NamedTuple):
     on the skin would make. `tone` holds log contrast and bend of the tone curve. `blur` is the
     standard deviation in pixels of a picture 192 pixels wide. `noise` holds standard deviations in
     white and added towards black, `grain` the standard normal field that they scale. `quality` is
-    that of JPEG, 0 for no compression. `mirror` is 1 for pictures that are mirrored.
+    that of JPEG, 0 for no compression. `mirror` is 1 for pictures that are mirrored. `mired_error`
+    is the error in mired of the white that the camera assumes, beside `white_balance`. `linear` is
+    1 for a picture in linear light, without tone curve or processing.
     """
 
     sensor: Float[Tensor, "*batch"]
@@ -255,6 +297,10 @@ class CameraParameters(NamedTuple):
     noise: Float[Tensor, "*batch 2"]
     quality: Float[Tensor, "*batch"]
     mirror: Float[Tensor, "*batch"]
+    mired_error: Float[Tensor, "*batch"]
+    linear: Float[Tensor, "*batch"]
+    processing: ProcessingParameters
+    known: KnownParameters
 
 
 class SceneParameters(NamedTuple):

@@ -36,10 +36,11 @@ def test_a_repr_holds_numbers_and_no_arrays(
     decomposition: Decomposition, skinless_file: Path, astronaut: np.ndarray
 ) -> None:
     summary = decomposition.summary()
-    means = {name: summary["maps"][name]["mean"] for name in ("melanin", "hemoglobin")}
+    melanin, hemoglobin = (summary["pigments"][name] for name in ("melanin", "hemoglobin"))
     assert repr(decomposition) == (
-        f"<Decomposition 512 x 512: melanin {means['melanin']:.3g}, "
-        f"hemoglobin {means['hemoglobin']:.3g} on skin, {summary['skin_share']:.0%} of the crop>"
+        f"<Decomposition 512 x 512: melanin {melanin['mean']:.2g} ± {melanin['sd']:.1g}, "
+        f"hemoglobin {hemoglobin['mean']:.2g} ± {hemoglobin['sd']:.1g}, "
+        f"{summary['skin_share']:.0%} is skin>"
     )
     assert repr(Decomposer(skinless_file)(astronaut)) == "<Decomposition 512 x 512: no skin>"
 

@@ -22,9 +22,10 @@ def run_onnxruntime() -> dict[str, np.ndarray]:
 def run_torch() -> dict[str, np.ndarray]:
     image = torch.from_numpy(load_photograph()).movedim(-1, 1).float() / 255
     with torch.no_grad():
-        maps, capture = SkinAutoencoder.from_pretrained().encode(image)
+        maps, capture, uncertainty = SkinAutoencoder.from_pretrained().encode(image)
     named = {**maps._asdict(), **capture._asdict(), "offset": maps.offset.movedim(1, -1)}
-    return {name: value.numpy() for name, value in named.items()}
+    named |= {f"{name}_sd": value for name, value in uncertainty._asdict().items()}
+    return {name: value.numpy() for name, value in named.items() if value is not None}
 
 
 @pytest.mark.parametrize("run", [run_onnxruntime, run_torch])

@@ -6,10 +6,12 @@ from PIL import Image, ImageDraw
 
 from skinnet.images import Box, Face, frame_head
 from skinnet.inference._head_crop import HeadCrop, crop_head, crop_patch, place_face_in_cut
-from skinnet.inference.onnx_model import MAP_NAMES
+from skinnet.inference.onnx_model import _SD_NAMES, MAP_NAMES
 
 SIZE = 160
 LANDMARKS = np.zeros((478, 2), np.float32)
+
+NAMES = (*MAP_NAMES, *_SD_NAMES, "mask")
 
 
 def make_face(tilt: float, middle: tuple[int, int] = (200, 200), width: int = 80) -> Face:
@@ -27,7 +29,7 @@ def make_photo() -> np.ndarray:
 def run_encoder(cut: np.ndarray) -> dict[str, np.ndarray]:
     """Maps that are the channels of the cut."""
     maps = cut.astype(np.float32)[None] / 255
-    outputs = {name: maps[..., 0] for name in (*MAP_NAMES, "mask")}
+    outputs = {name: maps[..., 0] for name in NAMES}
     return outputs | {"offset": maps, "light": np.array([[0.25, 0.75]], np.float32)}
 
 
@@ -64,7 +66,7 @@ def test_the_cut_is_upright() -> None:
 
 def test_the_mask_is_0_outside_the_turned_square() -> None:
     crop = crop_head(make_face(45.0), (400, 400))
-    outputs = {name: np.ones((1, SIZE, SIZE), np.float32) for name in (*MAP_NAMES, "mask")}
+    outputs = {name: np.ones((1, SIZE, SIZE), np.float32) for name in NAMES}
     turned = crop.turn_back(outputs, SIZE)
     assert not turned["mask"][0, 0, 0] and not turned["mask"][0, -1, -1]
     assert (turned["melanin"] == 1).all()

@@ -33,13 +33,15 @@ def test_missing_model_files_are_named(save_model: SaveModel, tmp_path: Path) ->
     ("metadata", "words"),
     [
         ({"kind": None}, "is an ONNX file, but not one of skinnet's"),
-        ({"format": "2"}, "has format 2, and this skinnet reads format 1; export it again"),
+        ({"format": "1"}, "has format 1, and this skinnet reads format 2; export it again"),
+        ({"format": "3"}, "has format 3, .* pip install -U skinnet"),
         ({"format": None}, "has format None"),
         ({"kind": "decoder"}, "is a decoder, but an encoder is needed"),
         ({"lights": "D, A"}, "The metadata of .* is damaged"),
         ({"working_size": "large"}, "The metadata of .* is damaged"),
         ({"working_size": "0"}, "The metadata of .* is damaged"),
         ({"outputs": "{}"}, "The metadata of .* is damaged"),
+        ({"region_share": "[1]"}, "The metadata of .* is damaged"),
         ({"outputs": None}, "The metadata of .* is damaged"),
     ],
 )
@@ -55,7 +57,7 @@ def test_a_file_with_other_outputs_is_refused(tmp_path: Path) -> None:
     other = helper.make_tensor_value_info("y", TensorProto.FLOAT, [1])
     graph = helper.make_graph([helper.make_node("Neg", ["x"], ["y"])], "g", [value], [other])
     model = helper.make_model(graph, opset_imports=[helper.make_opsetid("", 20)], ir_version=10)
-    helper.set_model_props(model, {"skinnet.kind": "encoder", "skinnet.format": "1"})
+    helper.set_model_props(model, {"skinnet.kind": "encoder", "skinnet.format": "2"})
     onnx.save(model, tmp_path / "a.onnx")
     with pytest.raises(
         InputError, match="is labelled as an encoder, but its inputs are x and its outputs y"

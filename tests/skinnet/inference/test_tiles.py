@@ -81,6 +81,22 @@ def test_longest_caption_leaves_room_for_the_note() -> None:
     assert caption + _tiles._load_font(15).getlength("100 % above 50 %") < TILE
 
 
+def test_a_mean_with_its_interval_has_room_beside_the_name() -> None:
+    note = "0.95 % (0.082 to 0.99 %)"
+    name = _tiles._load_font(20).getlength("hemoglobin")
+    assert name + _tiles._load_font(15).getlength(note) < TILE
+    values, mask = np.full((10, 10), 0.1), np.ones((10, 10))
+    plain, noted = (
+        np.asarray(draw_pigment_map("melanin", values, mask, note=each))[:TOP]
+        for each in ("", note)
+    )
+    changed = (plain != noted).any((0, 2))
+    assert changed[TILE // 2 :].any() and not changed[: TILE // 4].any()
+    both = np.asarray(draw_pigment_map("melanin", 9 * values, mask, note=note))[:TOP]
+    alone = np.asarray(draw_pigment_map("melanin", 9 * values, mask))[:TOP]
+    assert not np.array_equal(both, alone) and not np.array_equal(both, noted)
+
+
 def test_rows_without_a_scale_are_lower() -> None:
     picture = draw_picture("grey", np.full((8, 8, 3), 128, np.uint8))
     map_ = draw_pigment_map("melanin", np.full((4, 4), 0.03), np.ones((4, 4)))

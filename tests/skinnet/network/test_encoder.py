@@ -1,15 +1,9 @@
-"""Attention pooling, confidence-weighted voting, and the names of weights."""
+"""Attention pooling, confidence-weighted voting, and what is known of a capture."""
 
-from pathlib import Path
-
-import pytest
 import torch
-from safetensors import safe_open
 
-from skinnet.network import SkinAutoencoder
-from skinnet.network.encoder import _EARLIER_NAMES, _POOLED_COLOURS, _AttentionPooling
-
-STAGE1 = Path(__file__).parents[3] / "benchmarks" / "stage1.safetensors"
+from skinnet.network import SkinEncoder
+from skinnet.network.encoder import _POOLED_COLOURS, _AttentionPooling
 
 
 def make_pooling() -> _AttentionPooling:
@@ -43,27 +37,9 @@ def test_gradients_of_the_tint_are_finite() -> None:
     assert gradient.isfinite().all() and gradient.any()
 
 
-@pytest.mark.parametrize("prefix", ["", "model."])
-def test_weights_of_earlier_files_are_renamed(prefix: str) -> None:
-    with safe_open(STAGE1, framework="pt") as file:
-        earlier = {prefix + name: file.get_tensor(name).float() for name in file.keys()}
-    assert all(any(f".{old}" in name for name in earlier) for old in _EARLIER_NAMES)
-    names, model = set(earlier), SkinAutoencoder()
-    holder = torch.nn.ModuleDict({"model": model}) if prefix else model
-    holder.load_state_dict(earlier)
-    assert set(earlier) == names  # the caller's dict is left alone
-    state = model.encoder.state_dict()
-    for old, today in (
-        ("gather.look.weight", "pooling.conv.weight"),
-        ("gather.attend.bias", "pooling.attention.bias"),
-        ("gather.expect.weight", "pooling.expected_chroma.weight"),
-        ("scene.0.weight", "context.0.weight"),
-        ("weigh.2.bias", "refine.2.bias"),
-        ("balanced.weight", "white_balance.weight"),
-        ("head.mixed.0.running_var", "head.norm.0.running_var"),
-        ("stem.0.0.weight", "stem.0.0.weight"),
-    ):
-        assert torch.equal(state[today], earlier[f"{prefix}encoder.{old}"])
-    again = SkinAutoencoder()
-    again.load_state_dict(model.state_dict())
-    assert torch.equal(again.encoder.refine[2].bias, model.encoder.refine[2].bias)
+def test_what_is_known_changes_nothing_before_it_is_trained() -> None:
+    torch.manual_seed(0)
+    encoder = SkinEncoder(7, 20, (4, 8), known_values=5).eval()
+    photograph = torch.rand(2, 3, 16, 16)
+    plain, told = encoder(photograph, photograph), encoder(photograph, photograph, torch.rand(2, 5))
+    assert torch.equal(plain[0], told[0]) and torch.equal(plain[1], told[1])

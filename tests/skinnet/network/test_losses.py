@@ -1,10 +1,14 @@
 """Losses are zero for perfect readings, and have the values of their equations."""
 
+import math
+
+import numpy as np
 import pytest
 import torch
 from plain_maps import capture, maps
+from scipy.stats import norm
 
-from skinnet.network import F_MEL_MAX, SkinMaps, losses, priors
+from skinnet.network import F_MEL_MAX, SkinMaps, Uncertainty, losses, priors
 
 
 def test_a_perfect_reading_costs_nothing() -> None:
@@ -144,3 +148,26 @@ def test_gradients_are_finite_at_the_edges() -> None:
     )
     for gradient in torch.autograd.grad(total, guess, allow_unused=True):
         assert gradient is None or gradient.isfinite().all()
+
+
+def test_the_likelihood_is_that_of_normal_errors_of_logarithms() -> None:
+    truth = maps()
+    guess = truth._replace(melanin=truth.melanin * 1.2, hemoglobin=truth.hemoglobin / 1.1)
+    pixel, face = torch.full((2, 8, 8), 0.3), torch.full((2, 2), 0.1)
+    found = losses.pigment_likelihood(guess, Uncertainty(pixel, pixel, face), truth)
+    scores = [-norm(0, d).logpdf(e) for d in (0.3, 0.1) for e in np.log([1.2, 1 / 1.1])]
+    assert found.item() == pytest.approx(np.mean(scores) * 2 - math.log(2 * math.pi), rel=1e-4)
+
+
+def test_the_likelihood_is_smallest_for_the_true_deviation_and_moves_no_map() -> None:
+    torch.manual_seed(0)
+    truth = maps()
+    melanin = (truth.melanin * torch.exp(0.2 * torch.randn(2, 8, 8))).requires_grad_()
+    scale = torch.tensor([0.1, 0.2, 0.4], requires_grad=True)
+    costs = []
+    for one in scale:
+        spread = Uncertainty(one.expand(2, 8, 8), one.expand(2, 8, 8), 0 * one.expand(2, 2) + 1)
+        costs.append(losses.pigment_likelihood(truth._replace(melanin=melanin), spread, truth))
+    assert costs[1] < costs[0]
+    sum(costs).backward()
+    assert melanin.grad is None and scale.grad is not None

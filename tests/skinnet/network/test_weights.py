@@ -16,7 +16,12 @@ def test_configuration_training_data_and_weights_are_kept(tmp_path: Path) -> Non
     model.save_pretrained(tmp_path / "model.safetensors")
     saved = read_weights(tmp_path / "model.safetensors")
     assert saved.trained_on == "noise"
-    assert saved.config == {"optics": "measured", "widths": [4, 6], "working_size": 48}
+    assert saved.config == {
+        "optics": "measured",
+        "widths": [4, 6],
+        "working_size": 48,
+        "white_balance_max": 0.9,
+    }
     again = SkinAutoencoder.from_pretrained(tmp_path / "model.safetensors")
     photograph = torch.rand(1, 3, 9, 7)
     expected = model.eval()(photograph).reconstruction

@@ -95,7 +95,7 @@ def test_gradients_of_the_modes_agree(
     weight = torch.randn(4, 3, 64, 64, generator=torch.Generator().manual_seed(1), dtype=D)
     gradients = []
     for fast in (True, False):
-        inputs = [value.clone().requires_grad_() for value in (*f, *random_capture(4))]
+        inputs = [value.clone().requires_grad_() for value in (*f, *random_capture(4)[:4])]
         image = SkinDecoder(fast=fast, dtype=D)(*inputs[:2], capture=Capture(*inputs[2:]))
         gradients.append(torch.autograd.grad((weight * image).sum(), inputs))
     for ours, exact in zip(*gradients, strict=True):
@@ -134,7 +134,7 @@ def test_gradients_are_right_in_the_corners(
     decoder, capture = SkinDecoder(fast=fast, dtype=D), random_capture(1)
     f = [torch.full((1, 1, 2), value, dtype=D, requires_grad=not fast) for value in corner]
     others = [m.requires_grad_() for m in maps(1, 1, 2)]
-    lamp, kelvin, device, balance = (value.requires_grad_() for value in capture)
+    lamp, kelvin, device, balance = (value.requires_grad_() for value in capture[:4])
 
     def picture(*inputs: torch.Tensor) -> torch.Tensor:
         light, heat, camera, white = inputs[4:]
@@ -201,7 +201,7 @@ def test_any_leading_shape(
     image = decoder(f_mel, f_blood, shading, capture=capture)
     assert image.shape == (*shape, 3, 2, 3)
     first = (0,) * len(shape)
-    alone = Capture(*(value[first] for value in capture))
+    alone = capture.map(lambda value: value[first])
     expected = decoder(f_mel[first], f_blood[first], shading[first], capture=alone)
     assert torch.allclose(image[first], expected, atol=1e-12)
 
@@ -212,7 +212,7 @@ def test_single_precision_is_good_to_a_millionth(
 ) -> None:
     f, capture = maps(3, 16, 16), random_capture(3)
     double = SkinDecoder(fast=fast, dtype=D)(*f, capture=capture)
-    low = Capture(*(value.float() for value in capture))
+    low = capture.map(torch.Tensor.float)
     single = SkinDecoder(fast=fast)(*(value.float() for value in f), capture=low)
     assert single.dtype == torch.float32 and torch.allclose(single.double(), double, atol=5e-6)
 
@@ -259,7 +259,7 @@ def test_one_capture_serves_a_batch_and_one_map_many_captures(
     stacked = [torch.stack([value] * 3) for value in f]
     many = decoder(*f, capture=capture)
     assert torch.allclose(many, decoder(*stacked, capture=capture))
-    first = Capture(*(value[0] for value in capture))
+    first = capture.map(lambda value: value[0])
     assert torch.allclose(decoder(*stacked, capture=first)[1], many[0])
 
 

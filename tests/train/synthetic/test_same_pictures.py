@@ -11,8 +11,8 @@ from train.batch import Batch
 from train.synthetic.faces import SyntheticFaces, SyntheticScenes
 from train.synthetic.photography.renderer import render
 
-TRAIN = (0.21912456, 0.0242834, 0.02715974, 0.0537778, 0.00268468, 0.07689927, 0.16027005)
-TEST = (0.29194102, 0.03692688, 0.02704669, 0.04756396, 0.00177844, 0.2123137, 0.21221191)
+TRAIN = (0.21912456, 0.0242834, 0.02715974, 0.0537778, 0.00268468, 0.07689927, 0.1704403)
+TEST = (0.29194102, 0.03692688, 0.02704669, 0.04756396, 0.00177844, 0.2123137, 0.2073564)
 
 
 def describe(batch: Batch) -> Iterator[float]:

@@ -3,10 +3,12 @@
 from collections.abc import Callable
 from pathlib import Path
 
+import numpy as np
 import pytest
 
 from train.synthetic.casts import head_cache
 from train.synthetic.faces import SyntheticFaces
+from train.synthetic.sampling.face_sampling import sample_face
 
 KNOWN = {
     "val": (6970, 236320, 479772, 5905.27880859375),
@@ -40,6 +42,31 @@ def test_a_model_says_what_it_saw() -> None:
     assert (
         "scenes of procedural heads of the variety any" in SyntheticFaces(variety="any").description
     )
+
+
+def test_captures_are_named_too() -> None:
+    assert "in wide captures" in SyntheticFaces(captures="wide").description
+    assert "and 7 portraits" in SyntheticFaces(variety="any", portrait_heads=7).description
+
+
+def test_hair_and_eyes_of_any_faces_say_nothing_about_the_skin() -> None:
+    rng = np.random.default_rng(0)
+    faces = [sample_face(rng, True, "any") for _ in range(600)]
+    melanin = np.log([face.skin.melanin.fraction.item() for face in faces])
+    for colour in ("hair.colour", "features.iris"):
+        record, field = colour.split(".")
+        values = [getattr(getattr(face, record), field).mean().item() for face in faces]
+        assert abs(np.corrcoef(melanin, np.log(values))[0, 1]) < 0.1
+
+
+def test_portrait_heads_are_mixed_among_the_others(tmp_path: Path) -> None:
+    data = SyntheticFaces(
+        32, heads=2, val_heads=1, geometry=str(tmp_path), variety="any", portrait_heads=2
+    )
+    data.setup("fit")
+    assert len(data.buffers["train"].label) == 4 and len(data.buffers["val"].label) == 1
+    folders = {path.name for path in tmp_path.iterdir() if path.is_dir()}
+    assert len(folders) == 2
 
 
 def test_varieties_have_folders_of_their_own() -> None:

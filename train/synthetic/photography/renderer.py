@@ -8,7 +8,7 @@ from jaxtyping import Float, Int8, Int64, UInt8
 from torch import Tensor
 
 from skinnet.network.autoencoder import SHADING_MAX, SkinMaps
-from skinnet.physics import Capture, SkinDecoder, luminance
+from skinnet.physics import Capture, SkinDecoder, SpectralCamera, luminance
 from skinnet.shape._procedural_head import CHART_EXTENT
 from train.batch import Batch
 from train.synthetic.labels import BODY, FILM, MATERIALS, SKIN
@@ -17,8 +17,13 @@ from train.synthetic.painting.face_painting import FaceCharts, paint_face
 from train.synthetic.painting.garment_colours import reflect_in_lenses
 from train.synthetic.painting.materials import OIL, colour_materials, colour_wall
 from train.synthetic.painting.paintings import Paintings, find_paintings, merge_paintings
+from train.synthetic.photography.known_capture import find_white_balance, tell_capture
 from train.synthetic.photography.shading import Shading, shade
-from train.synthetic.photography.simulated_camera import simulate_sensor, take_photograph
+from train.synthetic.photography.simulated_camera import (
+    photograph_white,
+    simulate_sensor,
+    take_photograph,
+)
 from train.synthetic.scene import (
     CameraParameters,
     FaceParameters,
@@ -83,6 +88,9 @@ def render(scene: SceneParameters, decoder: SkinDecoder, split: str = "train") -
     # The wall has its own light.
     wall = colour_wall(surroundings, material.shape[-2:])
     lit = surface.other * shading.diffuse + shading.specular
+    if shading.tint is not None:
+        wall = wall * expand_colour(scene.light.tints[:, 0].exp())
+        lit = lit * shading.tint
     other = torch.where(material > 0, lit, wall) * white
     share = skin * (1 - surface.cover)
     visible = VisibleSkin(
@@ -92,7 +100,7 @@ def render(scene: SceneParameters, decoder: SkinDecoder, split: str = "train") -
     if film.any():
         reflected = reflect_in_lenses(scene.face.garments, paintings.first, scene.light.sky, film)
         rest = rest + reflected * white
-    return develop(scene.camera, visible, rest, white, capture)
+    return develop(scene.camera, visible, rest, white, capture, decoder.camera)
 
 
 class _Surface(NamedTuple):
@@ -169,7 +177,12 @@ def _paint_charts(face: FaceParameters, number: Int64[Tensor, "paintings"]) -> F
 
 
 def develop(
-    camera: CameraParameters, skin: VisibleSkin, rest: Image, white: Image, capture: Capture
+    camera: CameraParameters,
+    skin: VisibleSkin,
+    rest: Image,
+    white: Image,
+    capture: Capture,
+    model: SpectralCamera,
 ) -> Batch:
     """Photograph skin and everything else, and assemble the ground truth.
 
@@ -178,13 +191,16 @@ def develop(
         skin: Skin and its light.
         rest: Linear light of all that is not skin.
         white: Linear sRGB of a white diffuser, [batch, 3, 1, 1].
-        capture: Light and camera, returned unchanged.
+        capture: Light and camera, returned with the white balance and the exposure that the
+            photograph shows.
+        model: Statistical model of cameras.
 
     Returns:
         Photographs, masks, true maps, captures and albedo.
     """
-    diffuse, specular = skin.shading
-    linear = skin.share * (skin.albedo * diffuse + specular * white) + rest
+    diffuse, specular, tint = skin.shading
+    lit = skin.share * (skin.albedo * diffuse + specular * white)
+    linear = (lit if tint is None else lit * tint) + rest
     gain = _expose(camera, linear, skin.share)
     truth = SkinMaps(
         skin.melanin,
@@ -195,7 +211,21 @@ def develop(
         skin.share[:, 0],
     )
     photograph = take_photograph(camera, gain * linear)
-    return _mirror(Batch(photograph, truth.mask, truth, capture, skin.albedo), camera.mirror > 0)
+    seen = photograph_white(camera, (gain * white)[..., 0, 0])
+    capture = capture._replace(
+        white_balance=find_white_balance(seen, model),
+        linear=camera.linear,
+        exposure=luminance(seen[..., None, None])[:, 0, 0, 0].log(),
+    )
+    batch = Batch(
+        photograph,
+        truth.mask,
+        truth,
+        capture,
+        skin.albedo,
+        known=tell_capture(camera, capture),
+    )
+    return _mirror(batch, camera.mirror > 0)
 
 
 def decode_normals(normal: Int8[Tensor, "batch height width 3"]) -> Image:
@@ -231,4 +261,9 @@ def _mirror(batch: Batch, chosen: Tensor) -> Batch:
         return torch.where(where, value.flip(-1), value)
 
     truth = SkinMaps(*map(mirror, batch.truth))
-    return Batch(mirror(batch.photograph), truth.mask, truth, batch.capture, mirror(batch.albedo))
+    return batch._replace(
+        photograph=mirror(batch.photograph),
+        mask=truth.mask,
+        truth=truth,
+        albedo=mirror(batch.albedo),
+    )

@@ -8,7 +8,7 @@ from torch import Tensor
 
 from train.synthetic.casts.directions import LIGHT_DIRECTIONS
 from train.synthetic.scene import LightParameters, SpecularParameters
-from train.synthetic.tensors import expand_scalar
+from train.synthetic.tensors import expand_colour, expand_scalar
 
 _NEAREST = 5
 """Directions that stand for one lamp. A lamp is an area, so that shadows have soft edges."""
@@ -20,10 +20,14 @@ Map = Float[Tensor, "batch 1 height width"]
 
 
 class Shading(NamedTuple):
-    """Diffuse shading and specular reflection, relative to a white diffuser facing the light."""
+    """Diffuse shading and specular reflection, relative to a white diffuser facing the light.
+
+    `tint` is the colour of the light in linear sRGB, with a green of about 1; None: white.
+    """
 
     diffuse: Map
     specular: Map
+    tint: Float[Tensor, "batch 3 height width"] | None = None
 
 
 def shade(
@@ -53,17 +57,23 @@ def shade(
     sky = _shade_sky(light.sky, normal).clamp_min(0.03) * sky_visibility
     diffuse, lobes = sky, torch.zeros_like(sky)
     sharpness = expand_scalar(2 / specular.roughness**4 - 2)
-    for lamp, strength, softness in zip(
-        light.lamps.unbind(1), light.strength.unbind(1), light.softness.unbind(1), strict=True
+    sky_tint, *tints = (expand_colour(one) for one in light.tints.exp().unbind(1))
+    coloured = sky_tint * sky if light.tints.any() else None
+    for lamp, strength, softness, tint in zip(
+        *(one.unbind(1) for one in (light.lamps, light.strength, light.softness)),
+        tints,
+        strict=True,
     ):
         cosine = torch.einsum("bi,bihw->bhw", lamp, normal)[:, None].clamp_min(0)
         visibility = find_lamp_visibility(visibility_mask, lamp, softness)
         irradiance = expand_scalar(strength) * cosine * visibility
         diffuse = diffuse + irradiance
+        coloured = None if coloured is None else coloured + tint * irradiance
         lobes = lobes + irradiance * _evaluate_lobe(lamp, normal, sharpness)
     # A rough surface also reflects light from all other directions to the camera.
     lobes = lobes + _reflect_at_rim(normal) * diffuse
-    return Shading(diffuse, lobes * expand_scalar(specular.oil) * oil)
+    tint = None if coloured is None else coloured / diffuse.clamp_min(1e-4)
+    return Shading(diffuse, lobes * expand_scalar(specular.oil) * oil, tint)
 
 
 def find_lamp_visibility(

@@ -60,7 +60,9 @@ def sample_face(
     limits = RANDOMISED_MELANIN_RANGE if domain_randomised else MELANIN_RANGE
     f_mel = float(np.exp(rng.uniform(*np.log(limits))))
     skin, marks = _sample_skin(rng, f_mel), _sample_marks(rng)
-    (hair, features), (beard, cosmetics, garments) = _sample_features(rng, f_mel), make_no_style()
+    # Hair and eyes of the variety `any` say nothing about the skin.
+    hinted = f_mel if variety == "mild" else float(np.exp(rng.uniform(*np.log(limits))))
+    (hair, features), (beard, cosmetics, garments) = _sample_features(rng, hinted), make_no_style()
     face = FaceParameters(skin, marks, hair, features, beard, cosmetics, garments)
     return face if variety == "mild" else add_style(face, rng)
 

@@ -8,8 +8,15 @@ from skinnet.physics import LIGHTS
 from train.synthetic.labels import FILM, SKIN
 from train.synthetic.sampling.face_sampling import sample_face
 from train.synthetic.sampling.style_sampling import vary_surroundings
+from train.synthetic.sampling.wide_captures import (
+    make_no_processing,
+    make_nothing_known,
+    widen_camera,
+    widen_light,
+)
 from train.synthetic.scene import (
     LAMPS,
+    SOURCES,
     CameraParameters,
     FaceParameters,
     HeadBuffers,
@@ -19,7 +26,7 @@ from train.synthetic.scene import (
     map_tensors,
 )
 from train.synthetic.tensors import make_tensors
-from train.synthetic.variety import Variety
+from train.synthetic.variety import Captures, Variety
 
 WHITE_BALANCE_SD = 0.03
 """Standard deviation of the log error of a camera's gains of red and of blue."""
@@ -33,6 +40,7 @@ def sample_scene(
     head: HeadBuffers,
     domain_randomised: bool = False,
     variety: Variety = "mild",
+    captures: Captures = "mild",
 ) -> SceneParameters:
     """Sample all that is needed for one picture of a head.
 
@@ -43,6 +51,7 @@ def sample_scene(
             of .33 instead of .25, and oil times the exponential of an exponential variate of mean
             .35.
         variety: Which kind of faces.
+        captures: Which kind of lights and cameras.
 
     Returns:
         Parameters in float32.
@@ -51,6 +60,8 @@ def sample_scene(
     surroundings, light = _sample_surroundings(rng), sample_light(rng)
     camera = sample_camera(rng, head.label.shape[-1])
     person = _finish_person(rng, face, surroundings, domain_randomised, variety)
+    if captures == "wide":
+        light, camera = widen_light(light, rng), widen_camera(camera, rng)
     return SceneParameters(head, *person, light, camera)
 
 
@@ -142,6 +153,7 @@ def sample_light(rng: np.random.Generator) -> LightParameters:
             softness=np.exp(rng.uniform(np.log(0.08), np.log(0.7), LAMPS)),
             mixture=daylight * (1 - other.sum()) + np.r_[0, other],
             temperature=1e6 / np.clip(rng.normal(172, 12), 120, 235),
+            tints=np.zeros((SOURCES, 3)),
         )
     )
     return map_tensors(torch.Tensor.float, light)
@@ -161,7 +173,11 @@ def sample_camera(rng: np.random.Generator, size: int) -> CameraParameters:
             noise=rng.uniform(0, 1, 2) ** 2 * (0.010, 0.012),
             quality=rng.choice([0, rng.uniform(35, 95)], p=(0.4, 0.6)),
             mirror=rng.integers(2),
-        )
+            mired_error=0.0,
+            linear=0.0,
+        ),
+        processing=make_no_processing(),
+        known=make_nothing_known(),
     )
     return map_tensors(torch.Tensor.float, camera)
 

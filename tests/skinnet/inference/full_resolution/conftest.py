@@ -3,7 +3,7 @@ import pytest
 from painted_skin import TOP, Maps, paint_maps
 
 from skinnet import SkinDecoder
-from skinnet.inference import SHIPPED_ENCODER, OnnxModel, open_model
+from skinnet.inference import CAPTURE_NAMES, SHIPPED_ENCODER, OnnxModel, open_model
 from skinnet.inference._onnx_pair import get_decoder_path
 from skinnet.inference.full_resolution._colour_table import ColourTable, tabulate_colours
 
@@ -21,7 +21,7 @@ def skin(decoder: OnnxModel) -> SkinDecoder:
 @pytest.fixture(scope="session")
 def table(skin: SkinDecoder, decoder: OnnxModel) -> ColourTable:
     capture = skin.camera.standard()._asdict()
-    outputs = {name: np.float32(value.numpy())[None] for name, value in capture.items()}
+    outputs = {name: np.float32(capture[name].numpy())[None] for name in CAPTURE_NAMES}
     return tabulate_colours(decoder, outputs, TOP)
 
 

@@ -1,0 +1,87 @@
+"""How constant the reading of rendered faces is, and how it follows their pigments."""
+
+from collections.abc import Mapping, Sequence
+
+import numpy as np
+from numpy.typing import NDArray
+
+from benchmarks.capture_spreads import describe_shots, measure_spreads
+from benchmarks.pair_rows import score_reading
+from benchmarks.pigment_changes import FACTORS, average, fit_slope
+from benchmarks.portraits import PIGMENTS
+from benchmarks.reader import NetworkReader
+from benchmarks.repeated_faces import RepeatedFaces, Shot, render_changed, render_people
+from benchmarks.report import Results
+from benchmarks.skin_readings import SkinReading, read_skin, stack_readings
+
+
+def measure_people(
+    settings: RepeatedFaces, readers: Mapping[str, NetworkReader]
+) -> tuple[dict[str, Results], Results]:
+    """Measure readings of people in several captures, by network, and their colour's spread."""
+    readings: dict[str, list[SkinReading]] = {name: [] for name in readers}
+    truths, described = [], []
+    for shots in render_people(settings):
+        truths.append(shots[0].truth)
+        described.append(describe_shots(shots[:2]))
+        for name, reader in readers.items():
+            readings[name].append(read_shots(shots, reader))
+    truth = np.stack(truths)
+    scores = {
+        name: _score(stack_readings(readings[name]), truth, reader)
+        for name, reader in readers.items()
+    }
+    return scores, measure_spreads(np.stack(described))
+
+
+def _score(reading: SkinReading, truth: NDArray[np.floating], reader: NetworkReader) -> Results:
+    first = SkinReading(reading.pigments[:, :2], reading.sd[:, :2], {})
+    return {
+        "pairs": score_reading(first, reader.model.decoder),
+        "single": correlate(reading.pigments[:, 0], truth),
+        f"fused{reading.sd.shape[1]}": correlate(fuse(reading), truth),
+    }
+
+
+def measure_changes(
+    settings: RepeatedFaces, readers: Mapping[str, NetworkReader]
+) -> dict[str, Results]:
+    """Measure, by network, slopes of log readings on logarithms of rendered fractions."""
+    slopes: dict[tuple[str, str, str], list[float]] = {}
+    for name, shots in render_changed(settings, FACTORS):
+        index = PIGMENTS.index(name)
+        true = np.exp([one.truth[index] for one in shots])
+        for row, reader in readers.items():
+            for way in ("blind", "known"):
+                read = read_shots(shots, reader, way == "known").pigments[:, index]
+                slopes.setdefault((row, way, name), []).append(fit_slope(read, true))
+    found: dict[str, Results] = {row: {"blind": {}, "known": {}} for row in readers}
+    for (row, way, name), some in slopes.items():
+        found[row][way][name] = average(some)
+    return found
+
+
+def read_shots(shots: Sequence[Shot], reader: NetworkReader, told: bool = False) -> SkinReading:
+    """Read photographs, with their captures known or not."""
+    return stack_readings(
+        read_skin(reader, one.photograph, known=one.known if told else None) for one in shots
+    )
+
+
+def fuse(reading: SkinReading) -> NDArray[np.float64]:
+    """Fuse the readings [..., shots, 2] of each person, by their inverse variances, to [..., 2]."""
+    weight = np.where(np.isfinite(reading.pigments), reading.sd**-2.0, 0)
+    return (weight * np.nan_to_num(reading.pigments)).sum(-2) / weight.sum(-2)
+
+
+def correlate(log_read: NDArray[np.floating], log_truth: NDArray[np.floating]) -> Results:
+    """Correlate fractions read with true ones, [people, 2], and their logarithms (`r_log`)."""
+    seen = np.isfinite(log_read).all(-1) & np.isfinite(log_truth).all(-1)
+    found: Results = {}
+    for index, name in enumerate(PIGMENTS):
+        read, truth = log_read[seen, index], log_truth[seen, index]
+        found[name] = {
+            "r": float(np.corrcoef(np.exp(read), np.exp(truth))[0, 1]),
+            "r_log": float(np.corrcoef(read, truth)[0, 1]),
+        }
+    return found

@@ -1,0 +1,144 @@
+"""What is known of a capture as inputs of the encoder, or a sentence on what is wrong with it."""
+
+import difflib
+from collections.abc import Mapping
+from typing import Any, Protocol, runtime_checkable
+
+import numpy as np
+from numpy.typing import NDArray
+
+from skinnet.errors import InputError
+from skinnet.inference.onnx_model import CAPTURE_NAMES, OnnxModel
+
+_KELVIN = 4000.0, 25000.0
+"""Range of colour temperatures of daylight."""
+
+_MOST_EXPOSED = 4.0
+"""Beyond it skin of every tone is black or white in a photograph."""
+
+
+@runtime_checkable
+class CaptureLike(Protocol):
+    """What has the fields of `Capture`, as numbers, sequences, arrays or tensors."""
+
+    @property
+    def light(self) -> Any:
+        """Weights of lights."""
+
+    @property
+    def temperature(self) -> Any:
+        """Colour temperature in kelvin."""
+
+    @property
+    def camera(self) -> Any:
+        """Coefficients of the camera basis."""
+
+    @property
+    def white_balance(self) -> Any:
+        """Logarithms of the error in R/G and in B/G."""
+
+    @property
+    def linear(self) -> Any:
+        """Whether the picture is in linear light."""
+
+    @property
+    def exposure(self) -> Any:
+        """Logarithm of the luminance of white."""
+
+
+Inputs = dict[str, NDArray[np.float32]]
+
+
+def make_capture_inputs(capture: CaptureLike, encoder: OnnxModel) -> Inputs:
+    """Make the optional inputs of an encoder, [1] or [1, n], of what is known of one capture.
+
+    Raises:
+        InputError: A part of it has another number of values, or values that cannot be.
+    """
+    if not isinstance(capture, CaptureLike):
+        raise InputError(
+            f"capture is a skinnet.inference.Capture; got a {type(capture).__name__}. "
+            "Capture(temperature=5500.0) is one."
+        )
+    light = _order_lights(capture.light, encoder.lights)
+    others = {name: getattr(capture, name) for name in (*CAPTURE_NAMES[1:], "linear", "exposure")}
+    shapes = {one.name: one.shape[1:] for one in encoder.session.get_overridable_initializers()}
+    inputs: Inputs = {}
+    for name, part in {"light": light, **others}.items():
+        shape = shapes[f"known_{name}"]
+        values = _read_numbers(name, part, shape[0] if shape else 1)
+        if values is not None:
+            inputs[f"known_{name}"] = values.reshape(1, *shape).astype(np.float32)
+    return inputs
+
+
+def name_known(inputs: Inputs) -> tuple[str, ...]:
+    """Name what is known, as the fields of `Capture` are named."""
+    return tuple(name.removeprefix("known_") for name in inputs)
+
+
+def _order_lights(light: Any, names: tuple[str, ...]) -> Any:
+    """Weights by name in the order of the encoder's lights; what is no mapping stays."""
+    if not isinstance(light, Mapping):
+        return light
+    folded = {name.casefold(): name for name in names}
+    for name in light:
+        if name not in names:
+            close = difflib.get_close_matches(str(name).casefold(), folded, 1, 0.4)
+            meant = f"; {folded[close[0]]} may be meant" if close else ""
+            raise InputError(
+                f"There is no light of the name {name!r}{meant}. The lights are {', '.join(names)}."
+            )
+    return [light.get(name, 0.0) for name in names]
+
+
+def _read_numbers(name: str, part: Any, count: int) -> NDArray[np.float64] | None:
+    """The values [count] of a part; None if it is not known."""
+    if part is None:
+        return None
+    try:
+        values = np.asarray(part, np.float64).ravel()
+    except (TypeError, ValueError, RuntimeError) as error:
+        raise InputError(f"{name} of a capture is numbers; got {part!r:.80}.") from error
+    if np.isnan(values).all():
+        return None
+    if values.size != count:
+        raise InputError(
+            f"{name} of a capture has {count} value{'s' * (count > 1)}; got {values.size}."
+        )
+    if not np.isfinite(values).all():
+        raise InputError(
+            f"{name} of a capture has a value that is not finite ({part!r:.80}); give all of its "
+            "values, or None for what is not known."
+        )
+    return _check_values(name, values)
+
+
+def _check_values(name: str, values: NDArray[np.float64]) -> NDArray[np.float64]:
+    if name == "light":
+        return _normalise_weights(values)
+    if name == "temperature" and not _KELVIN[0] <= values[0] <= _KELVIN[1]:
+        raise InputError(
+            f"temperature of a capture is that of daylight, {_KELVIN[0]:,.0f} to "
+            f"{_KELVIN[1]:,.0f} K; got {values[0]:g}. Lamps are among the lights."
+        )
+    if name == "exposure" and abs(values[0]) > _MOST_EXPOSED:
+        raise InputError(
+            f"exposure of a capture is the natural logarithm of the luminance of white in the "
+            f"photograph, between -{_MOST_EXPOSED:g} and {_MOST_EXPOSED:g}; got {values[0]:g}."
+        )
+    if name == "linear" and values[0] not in (0, 1):
+        raise InputError(
+            f"linear of a capture is true, or false for a usual photograph; got {values[0]:g}."
+        )
+    return values
+
+
+def _normalise_weights(values: NDArray[np.float64]) -> NDArray[np.float64]:
+    if values.min() < 0 or values.sum() <= 0:
+        raise InputError(
+            f"light of a capture is weights that are not negative, and not all 0; got "
+            f"{', '.join(f'{value:g}' for value in values)}."
+        )
+    weights: NDArray[np.float64] = values / values.sum()
+    return weights

@@ -1,0 +1,97 @@
+"""Why what was read of a photograph should not be trusted, in words."""
+
+import math
+from collections.abc import Mapping, Sequence
+
+import numpy as np
+from numpy.typing import NDArray
+
+from skinnet.inference._uncertainty import find_factor
+from skinnet.inference.decomposition import SKIN_THRESHOLD
+
+_MELANIN_SPAN, _HEMOGLOBIN_SPAN = 3.0, 5.0
+"""Ratios of the ends of a face's 90 % interval above which a pigment cannot be told."""
+
+_COLOURED = 0.35
+"""Error of log R/G or log B/G above which the light is strongly coloured."""
+
+_CLIPPED_SHARE = 0.1
+"""Share of the skin that may be overexposed without a note."""
+
+_MOST_PIXELS = 1 << 20
+"""Of larger photographs, every second pixel is looked at, or every third, and so on."""
+
+_GIVE_WHITE = (
+    "The colour of something white or grey in the photograph, such as a wall or a sheet of paper, "
+    "tells the light: give it (in Python capture=Capture.from_white(colour))."
+)
+_GIVE_DAYLIGHT = "Give a photograph in daylight, without coloured light, filters or retouching."
+
+
+def list_doubts(
+    who: str,
+    photo: NDArray[np.uint8],
+    mask: NDArray[np.float32],
+    outputs: Mapping[str, NDArray[np.float32]],
+    known: Sequence[str],
+) -> tuple[str, ...]:
+    """List all doubts about what was read.
+
+    Args:
+        who: What was read, such as "the face in a.jpg".
+        photo: uint8 sRGB [H, W, 3], what was read of the photograph.
+        mask: Probability of skin [H, W].
+        outputs: Those of the encoder.
+        known: Names of what was given of the capture.
+    """
+    if not (mask > SKIN_THRESHOLD).any():
+        return ()
+    melanin, hemoglobin = outputs["face_sd"][0].tolist()
+    balance = outputs["white_balance"][0].tolist()
+    doubts = note_doubts(who, (melanin, hemoglobin), balance, "white_balance" in known)
+    return (*note_clipping(who, photo, mask), *doubts)
+
+
+def note_doubts(
+    who: str, face_sd: tuple[float, float], white_balance: Sequence[float], is_white_known: bool
+) -> tuple[str, ...]:
+    """Note what cannot be told, and what would help.
+
+    Args:
+        who: What was read, such as "the face in a.jpg".
+        face_sd: Standard deviations of the natural logarithms of mean melanin and hemoglobin.
+        white_balance: Natural logarithms of the error in R/G and in B/G.
+        is_white_known: Whether the white balance was given.
+    """
+    doubts = []
+    melanin, hemoglobin = (find_factor(sd) for sd in face_sd)
+    if melanin**2 > _MELANIN_SPAN:
+        doubts.append(
+            f"Melanin cannot be told well from this photograph: that of {who} may be "
+            f"{melanin:.2g} times higher or lower than what is read."
+        )
+    if hemoglobin**2 > _HEMOGLOBIN_SPAN:
+        doubts.append(
+            f"Hemoglobin cannot be told from this photograph: what is read of {who} is near that "
+            "of people at large."
+        )
+    if not is_white_known and max(map(abs, white_balance)) > _COLOURED:
+        doubts.append(
+            f"The light on {who} is strongly coloured, or the camera's white balance is wrong; the "
+            "pigments are only as right as the guess of it."
+        )
+    remedy = _GIVE_DAYLIGHT if is_white_known else _GIVE_WHITE
+    return (*doubts, remedy) if doubts else ()
+
+
+def note_clipping(who: str, photo: NDArray[np.uint8], mask: NDArray[np.float32]) -> tuple[str, ...]:
+    """Note that skin is overexposed, from uint8 sRGB [H, W, 3] and the mask [H, W]."""
+    step = max(1, math.isqrt(mask.size // _MOST_PIXELS))
+    skin = photo[::step, ::step][mask[::step, ::step] > SKIN_THRESHOLD]
+    share = float((skin == 255).any(-1).mean()) if skin.size else 0.0
+    if share <= _CLIPPED_SHARE:
+        return ()
+    return (
+        f"{share:.0%} of the skin of {who} is overexposed: its colour is lost, and its pigments "
+        "are read too low. Give a photograph with a shorter exposure.",
+    )

@@ -1,0 +1,151 @@
+"""What a user knows of how a photograph was taken."""
+
+import math
+from collections.abc import Mapping, Sequence
+from typing import Any, NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from skinnet.errors import InputError
+from skinnet.images.srgb import LUMINANCE_WEIGHTS, srgb_to_linear
+
+_TO_CAMERA = np.array(
+    (
+        (0.540070474, 0.361235976, 0.098693445),
+        (0.050515458, 0.726624548, 0.222859979),
+        (0.002372061, 0.270590574, 0.727037191),
+    )
+)
+"""Linear sRGB to the balanced channels of the mean camera in `SpectralCamera`."""
+
+_CLIPPED, _DARK = 250, 20
+"""Levels of 255 from which a channel is overexposed, and below which a colour is mostly noise."""
+
+_MOST_COLOURED = 0.9
+"""Largest norm of log R/G and log B/G, in the camera's channels, of something white under any
+light and camera that photographs are taken with; only coloured things have more."""
+
+_LEAST = 1e-3
+"""Smallest value of a channel whose logarithm is taken, as in the network."""
+
+
+class Capture(NamedTuple):
+    """What is known of the light and the camera of a photograph; None is what is not known.
+
+    `skinnet.physics.Capture` has the same fields as tensors, and may be given instead.
+
+    Attributes:
+        light: Weights of lights by the names in `OnnxModel.lights`, or a sequence of all weights in
+            that order. They are divided by their sum.
+        temperature: Colour temperature of the daylight among them, 4,000 to 25,000 K.
+        camera: Coefficients of the camera basis, in standard deviations.
+        white_balance: Natural logarithm of the error in R/G and in B/G, in the camera's channels.
+        linear: Whether the picture is in linear light, such as a RAW file that was developed
+            without a tone curve.
+        exposure: Natural logarithm of the luminance, in linear sRGB, that a white diffuser in the
+            light of the skin has in the photograph.
+
+    Example:
+        >>> from skimage.data import astronaut
+        >>> from skinnet import Decomposer
+        >>> from skinnet.inference import Capture
+        >>> flash = Capture(light={"D": 1.0}, temperature=5500.0)
+        >>> Decomposer(threads=1)(astronaut(), detail=False, capture=flash).capture_known
+        ('light', 'temperature')
+    """
+
+    light: Mapping[str, float] | Sequence[float] | NDArray[Any] | None = None
+    temperature: float | None = None
+    camera: Sequence[float] | NDArray[Any] | None = None
+    white_balance: Sequence[float] | NDArray[Any] | None = None
+    linear: bool | None = None
+    exposure: float | None = None
+
+    @classmethod
+    def from_white(
+        cls,
+        colour: Sequence[Any] | NDArray[Any],
+        reflectance: float | None = None,
+    ) -> "Capture":
+        """Find the white balance by the colour of something white or grey in the photograph.
+
+        It must be lit as the face is, such as a sheet of paper beside it, a grey card, or a wall.
+
+        Args:
+            colour: sRGB [3] as the photograph shows it: integers in [0, 255], or floats in [0, 1].
+            reflectance: How much of the light it reflects, in (0, 1]: a grey card .18, paper about
+                .85. With it the exposure is known, too; None: it is not known.
+
+        Returns:
+            A capture of which the white balance is known, and the exposure if the reflectance is.
+
+        Raises:
+            InputError: It is not a colour, or it is overexposed, too dark, or not white or grey; or
+                no reflectance.
+
+        Example:
+            >>> from skinnet.inference import Capture
+            >>> capture = Capture.from_white((220, 200, 170))  # in warm light
+            >>> [round(value, 2) for value in capture.white_balance]
+            [0.15, -0.19]
+        """
+        display = _read_colour(colour)
+        linear = srgb_to_linear(display).astype(np.float64)
+        red, green, blue = np.log(np.maximum(_TO_CAMERA @ linear, _LEAST)).tolist()
+        balance = red - green, blue - green
+        _refuse_unfit(display, balance)
+        return cls(white_balance=balance, exposure=_find_exposure(linear, reflectance))
+
+
+def _find_exposure(linear: NDArray[np.float64], reflectance: float | None) -> float | None:
+    if reflectance is None:
+        return None
+    if not 0.01 <= reflectance <= 1:
+        raise InputError(
+            f"reflectance of a white reference is a share in [0.01, 1]; got {reflectance:g}. A "
+            "grey card has 0.18, white paper about 0.85."
+        )
+    return math.log(float(linear @ LUMINANCE_WEIGHTS) / reflectance)
+
+
+def _read_colour(colour: Any) -> NDArray[np.float64]:
+    """The colour as display sRGB [3] in [0, 1]."""
+    try:
+        values = np.asarray(colour)
+    except ValueError:  # rows of different lengths
+        values = np.empty(0)
+    if values.shape != (3,) or values.dtype.kind not in "iuf":
+        raise InputError(
+            f"A white reference is one colour: red, green and blue. Got {colour!r:.80}; give the "
+            "mean of its pixels."
+        )
+    top = 1.0 if values.dtype.kind == "f" else 255.0
+    display = values.astype(np.float64) / top
+    if not ((display >= 0) & (display <= 1)).all():
+        raise InputError(
+            "A white reference is sRGB in integers of 0 to 255, or in floats of 0 to 1; got "
+            f"({', '.join(f'{value:g}' for value in values.tolist())})."
+        )
+    return display
+
+
+def _refuse_unfit(display: NDArray[np.float64], balance: tuple[float, float]) -> None:
+    levels = 255 * display
+    named = f"The white reference ({', '.join(f'{level:.0f}' for level in levels)})"
+    if levels.max() >= _CLIPPED:
+        raise InputError(
+            f"{named} is overexposed: {_CLIPPED} or more of 255 hides its true colour. Choose a "
+            "darker part of it, or something grey."
+        )
+    if levels.max() < _DARK:
+        raise InputError(
+            f"{named} is too dark: below {_DARK} of 255 its colour is noise. Choose something "
+            "brighter in the light that falls on the face."
+        )
+    if math.hypot(*balance) > _MOST_COLOURED:
+        raise InputError(
+            f"{named} is coloured: its log R/G and log B/G are {balance[0]:.2f} and "
+            f"{balance[1]:.2f}, and {_MOST_COLOURED:g} is the most that light makes of white. "
+            "Choose something white or grey."
+        )

@@ -1,0 +1,70 @@
+"""A reading that should not be trusted says so in words, with what would help."""
+
+import numpy as np
+import pytest
+
+from skinnet import Decomposer
+from skinnet.inference import Capture
+from skinnet.inference._doubts import note_clipping, note_doubts
+
+SURE = (0.2, 0.3)
+WHO = "the face in a.jpg"
+
+
+def test_what_is_known_well_has_no_note() -> None:
+    assert note_doubts(WHO, SURE, (0.1, -0.3), False) == ()
+
+
+@pytest.mark.parametrize(("span", "noted"), [(2.9, False), (3.1, True)])
+def test_melanin_is_in_doubt_if_its_interval_spans_a_factor_of_3(span: float, noted: bool) -> None:
+    sd = np.log(span) / (2 * 1.644854)
+    notes = note_doubts(WHO, (sd, 0.3), (0.0, 0.0), False)
+    assert bool(notes) == noted
+    if noted:
+        assert notes[0].startswith("Melanin cannot be told well from this photograph: that of the")
+        assert "may be 1.8 times higher or lower than what is read" in notes[0]
+        assert "Capture.from_white" in notes[-1] and len(notes) == 2
+
+
+@pytest.mark.parametrize(("span", "noted"), [(4.9, False), (5.1, True)])
+def test_hemoglobin_is_in_doubt_if_its_interval_spans_a_factor_of_5(
+    span: float, noted: bool
+) -> None:
+    sd = np.log(span) / (2 * 1.644854)
+    notes = note_doubts(WHO, (0.2, sd), (0.0, 0.0), False)
+    assert bool(notes) == noted
+    assert not noted or notes[0].startswith("Hemoglobin cannot be told from this photograph")
+
+
+@pytest.mark.parametrize("balance", [(0.4, 0.0), (0.0, -0.4)])
+def test_coloured_light_is_noted_unless_it_is_known(balance: tuple[float, float]) -> None:
+    note, remedy = note_doubts(WHO, SURE, balance, False)
+    assert note.startswith(f"The light on {WHO} is strongly coloured") and "white" in remedy
+    assert note_doubts(WHO, SURE, balance, True) == ()
+    assert note_doubts(WHO, SURE, (0.3, -0.3), False) == ()
+
+
+def test_who_has_given_white_is_not_asked_for_it() -> None:
+    notes = note_doubts(WHO, (1.0, 1.0), (0.0, 0.0), True)
+    assert len(notes) == 3 and "white" not in notes[-1] and "daylight" in notes[-1]
+
+
+@pytest.mark.parametrize(("share", "noted"), [(0.05, False), (0.2, True)])
+def test_overexposed_skin_is_noted(share: float, noted: bool) -> None:
+    photo = np.full((2000, 1500, 3), 200, np.uint8)
+    photo[: round(2000 * share), :, 0] = 255
+    mask = np.ones((2000, 1500), np.float32)
+    notes = note_clipping(WHO, photo, mask)
+    assert bool(notes) == noted
+    assert not noted or notes[0].startswith(f"20% of the skin of {WHO} is overexposed")
+    mask[: round(2000 * share)] = 0
+    assert note_clipping(WHO, photo, mask) == note_clipping(WHO, photo, 0 * mask) == ()
+
+
+def test_notes_are_those_of_the_photograph(decomposer: Decomposer, astronaut: np.ndarray) -> None:
+    assert decomposer(astronaut, detail=False).notes == ()
+    warm = Capture(white_balance=(0.5, -0.5))
+    assert decomposer(astronaut, detail=False, capture=warm).notes == ()
+    burnt = np.where(astronaut > 150, 255, astronaut).astype(np.uint8)
+    (note,) = decomposer(burnt, detail=False, name="b.jpg").notes
+    assert "% of the skin of the face in b.jpg is overexposed" in note

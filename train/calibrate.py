@@ -1,0 +1,178 @@
+"""Calibrates the uncertainty of a trained model: `python -m train.calibrate MODEL -o MODEL`.
+
+On synthetic validation faces in wide captures, half of which tell something of their capture, the
+standard deviations of pixels and of faces are scaled so that 90 % of the errors lie within the 90 %
+intervals. The share of the pixels' own variance that remains in the mean of a region is measured on
+squares of an eighth of the picture.
+"""
+
+import argparse
+import sys
+from collections.abc import Iterable, Sequence
+from pathlib import Path
+from typing import NamedTuple
+
+import torch
+import torch.nn.functional as F
+from jaxtyping import Float
+from scipy.stats import norm
+from torch import Tensor
+
+from skinnet.errors import InputError
+from skinnet.network import SkinAutoencoder
+from skinnet.network._means import log_fraction, mean_over
+from train.batch import Batch
+from train.synthetic.faces import SyntheticFaces
+
+LEVEL = 0.9
+"""Level of the intervals that are made right."""
+
+_LEAST_SKIN = 0.9
+"""Share of a square that is skin, for the square to count as a region."""
+
+
+class Residuals(NamedTuple):
+    """Errors of natural logarithms of melanin and hemoglobin, and their stated deviations."""
+
+    error: Float[Tensor, "2 count"]
+    deviation: Float[Tensor, "2 count"]
+
+    def find_scale(self) -> Float[Tensor, "2"]:
+        """Find the factors on the deviations with which a share `LEVEL` lies within."""
+        ratio = (self.error.abs() / self.deviation).quantile(LEVEL, dim=1)
+        return ratio / norm.ppf((1 + LEVEL) / 2)
+
+
+class Evidence(NamedTuple):
+    """Residuals of pixels, faces and regions; a region's deviation is its pixels' root mean."""
+
+    pixel: Residuals
+    face: Residuals
+    region: Residuals
+    region_face: Float[Tensor, "2 count"]
+
+
+@torch.no_grad()
+def calibrate(model: SkinAutoencoder, batches: Iterable[Batch]) -> None:
+    """Set `sd_scale` and `region_share` of a model, in place.
+
+    Args:
+        model: A trained model.
+        batches: Rendered pictures that training did not see.
+    """
+    model.sd_scale.fill_(1)
+    found = join([collect_evidence(model, batch) for batch in batches])
+    model.sd_scale.copy_(torch.stack([found.pixel.find_scale(), found.face.find_scale()]))
+    pixel, face = (
+        scale[:, None] * deviation
+        for scale, deviation in zip(
+            model.sd_scale, (found.region.deviation, found.region_face), strict=True
+        )
+    )
+    excess = (pixel**2 - face**2).clamp_min(0)
+    observed = _squash(found.region.error) - face**2
+    model.region_share.copy_(((observed * excess).sum(1) / (excess**2).sum(1)).clamp(0, 1))
+
+
+def _squash(error: Float[Tensor, "2 count"]) -> Float[Tensor, "2 count"]:
+    """Squared errors, of which those beyond four median errors count as four."""
+    most = 4 * error.abs().median(dim=1, keepdim=True).values
+    return error.abs().minimum(most) ** 2
+
+
+def collect_evidence(model: SkinAutoencoder, batch: Batch) -> Evidence:
+    """Compare what a model states with the truth of rendered pictures."""
+    assert batch.truth is not None
+    maps, _, uncertainty = model.encode(batch.photograph, batch.known)
+    mask, skin = batch.mask, batch.mask > 0.5
+    error = torch.stack([log_fraction(a) - log_fraction(b) for a, b in _pair(maps, batch)])
+    spread = torch.stack(uncertainty[:2])
+    means = [_log_mean(a, mask) - _log_mean(b, mask) for a, b in _pair(maps, batch)]
+    shown = skin.sum((-2, -1)) > 50
+    pixel = Residuals(error[:, skin][:, ::97], spread[:, skin][:, ::97])
+    face = Residuals(torch.stack(means)[:, shown], uncertainty.face.mT[:, shown])
+    return Evidence(pixel, face, *_collect_regions(error, spread, skin, uncertainty.face))
+
+
+def _pair(maps: tuple[Tensor, ...], batch: Batch) -> list[tuple[Tensor, Tensor]]:
+    assert batch.truth is not None
+    return list(zip(maps[:2], batch.truth[:2], strict=True))
+
+
+def _log_mean(fraction: Tensor, mask: Tensor) -> Tensor:
+    return log_fraction(mean_over(fraction, mask))
+
+
+def _collect_regions(
+    error: Tensor, spread: Tensor, skin: Tensor, face: Tensor
+) -> tuple[Residuals, Tensor]:
+    side = skin.shape[-1] // 8
+    whole = F.avg_pool2d(skin[:, None].float(), side)[:, 0] > _LEAST_SKIN
+    mean_error = F.avg_pool2d(error, side)[:, whole]
+    mean_spread = F.avg_pool2d(spread**2, side).sqrt()[:, whole]
+    own = face.mT[:, :, None, None].expand(-1, -1, *whole.shape[1:])[:, whole]
+    return Residuals(mean_error, mean_spread), own
+
+
+def join(parts: Sequence[Evidence]) -> Evidence:
+    """Join the evidence of several batches."""
+    return Evidence(
+        _join_residuals([part.pixel for part in parts]),
+        _join_residuals([part.face for part in parts]),
+        _join_residuals([part.region for part in parts]),
+        torch.cat([part.region_face for part in parts], 1),
+    )
+
+
+def _join_residuals(parts: Sequence[Residuals]) -> Residuals:
+    error, deviation = (torch.cat(one, 1) for one in zip(*parts, strict=True))
+    return Residuals(error, deviation)
+
+
+def main(argv: Sequence[str] | None = None) -> int:
+    """Calibrate a model.
+
+    Args:
+        argv: Arguments of the command; None means those of the process.
+
+    Returns:
+        The exit code, 2 for bad input.
+    """
+    parser = argparse.ArgumentParser(description=(__doc__ or "").splitlines()[0])
+    parser.add_argument("model", type=Path, help=".safetensors, or .ckpt of training")
+    parser.add_argument("-o", "--output", type=Path, required=True, help=".safetensors to write")
+    parser.add_argument("--ict", help="ICT-FaceKit's model as .npz")
+    parser.add_argument("--geometry", default="runs/geometry", help="Folder of the cast heads.")
+    parser.add_argument("--heads", type=int, default=64, help="Heads of the validation set.")
+    parser.add_argument("--samples", type=int, default=768, help="Pictures.")
+    given = parser.parse_args(argv)
+    try:
+        model = SkinAutoencoder.from_pretrained(given.model)
+        calibrate(model, render_faces(model, given))
+        model.save_pretrained(given.output)
+    except InputError as error:
+        print(error, file=sys.stderr)
+        return 2
+    print(
+        f"{given.output}: scales {model.sd_scale.tolist()}, regions {model.region_share.tolist()}"
+    )
+    return 0
+
+
+def render_faces(model: SkinAutoencoder, given: argparse.Namespace) -> Iterable[Batch]:
+    """Render the validation faces."""
+    data = SyntheticFaces(
+        model.config.working_size,
+        val_heads=given.heads,
+        val_samples=given.samples,
+        ict=given.ict,
+        geometry=given.geometry,
+        optics=model.config.optics,
+        captures="wide",
+    )
+    data.setup("validate")
+    return (data.render(scenes, "val") for scenes in data.val_dataloader())
+
+
+if __name__ == "__main__":
+    sys.exit(main())
