@@ -59,6 +59,13 @@ def test_hair_and_eyes_of_any_faces_say_nothing_about_the_skin() -> None:
         assert abs(np.corrcoef(melanin, np.log(values))[0, 1]) < 0.1
 
 
+def test_training_on_any_sees_the_darkest_skin() -> None:
+    rng = np.random.default_rng(0)
+    faces = [sample_face(rng, True, "any") for _ in range(200)]
+    melanin = [face.skin.melanin.fraction.item() for face in faces]
+    assert max(melanin) > 0.38 and min(melanin) < 0.014
+
+
 def test_portrait_heads_are_mixed_among_the_others(tmp_path: Path) -> None:
     data = SyntheticFaces(
         32, heads=2, val_heads=1, geometry=str(tmp_path), variety="any", portrait_heads=2

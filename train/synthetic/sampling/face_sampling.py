@@ -33,6 +33,9 @@ RANDOMISED_MELANIN_RANGE = (0.015, 0.33)
 Very dark skin in photographs is darker and greyer than skin of the test set. A network that was
 trained without such skin reads it as pale skin in dim light."""
 
+ANY_MELANIN_RANGE = (0.012, 0.42)
+"""The same for the variety `any`: the darkest Londoners have the angle of a fraction of .35."""
+
 HEMOGLOBIN_RANGE = (0.018, 0.090)
 """Base fraction of hemoglobin, uniform in its logarithm: somewhat more than the middle 90 % of
 measured forearms."""
@@ -50,14 +53,15 @@ def sample_face(
 
     Args:
         rng: Random numbers.
-        domain_randomised: Whether to sample melanin from `RANDOMISED_MELANIN_RANGE`, for training
-            alone.
+        domain_randomised: Whether to sample melanin from `RANDOMISED_MELANIN_RANGE`, or of the
+            variety `any` from `ANY_MELANIN_RANGE`; for training alone.
         variety: Which kind of faces.
 
     Returns:
         Parameters in the precision that they were sampled in, most of them in float64.
     """
-    limits = RANDOMISED_MELANIN_RANGE if domain_randomised else MELANIN_RANGE
+    randomised = RANDOMISED_MELANIN_RANGE if variety == "mild" else ANY_MELANIN_RANGE
+    limits = randomised if domain_randomised else MELANIN_RANGE
     f_mel = float(np.exp(rng.uniform(*np.log(limits))))
     skin, marks = _sample_skin(rng, f_mel), _sample_marks(rng)
     # Hair and eyes of the variety `any` say nothing about the skin.
