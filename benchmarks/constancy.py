@@ -49,7 +49,7 @@ from benchmarks.pair_rows import (
     score_regions,
 )
 from benchmarks.pigment_changes import KnownCrop, measure_slopes, remove_colour
-from benchmarks.portrait_pairs import FOLDER, Person, list_people, read_people
+from benchmarks.portrait_pairs import FOLDER, Person, read_people
 from benchmarks.portraits import PIGMENTS, Portrait, measure_wall_reflectance, read_portraits
 from benchmarks.reader import NetworkReader
 from benchmarks.repeated_faces import RepeatedFaces
@@ -60,6 +60,7 @@ from benchmarks.synthetic_constancy import measure_changes, measure_people
 from benchmarks.white_balances import MISSING, keep, list_balances
 from skinnet.errors import InputError
 from skinnet.network import SkinAutoencoder
+from train.people import read_index
 
 FOURTH = Path(__file__).parent / "fourth.safetensors"
 
@@ -189,18 +190,19 @@ def measure_rendered(settings: RepeatedFaces, readers: Readers) -> Results:
 def measure_second_source(folder: Path, readers: Readers, every: int = 1) -> Results:
     """Measure two degradations of photographs of people who are not among the pairs."""
     found: Results = {row: {"second_source": {}} for row in readers}
-    known = [row["person"] for row in list_people(folder / "congress_pairs")]
+    known = [row["person"] for row in read_index(folder / "congress_pairs")]
     for name, some in list_second_source(folder, known).items():
         _log(f"Second source: {name}.")
         pairs = list(read_degraded(some[::every]))
         if not pairs:
             continue
         others = [Person("", True, pair) for pair in pairs]
-        raw = compute_raw_angles(measure_colours(others, keep))
+        colours = measure_colours(others, keep)
+        raw = compute_raw_angles(colours)
         for row, reader in readers.items():
             score = score_network(read_pairs(others, reader), reader.model.decoder, raw)
             found[row]["second_source"][name] = score
-        uncorrected = score_colours(measure_colours(others, keep), raw)
+        uncorrected = score_colours(colours, raw)
         found.setdefault("baselines", {}).setdefault("uncorrected", {})[name] = uncorrected
     return found
 

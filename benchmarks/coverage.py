@@ -7,9 +7,8 @@ from scipy.stats import norm
 from torch import Tensor
 
 from benchmarks.pictures import Pictures, Pixels, average_by_picture
+from benchmarks.portraits import PIGMENTS
 from benchmarks.typology import GROUPS, find_group
-
-PIGMENTS = ("melanin", "hemoglobin")
 
 LEVEL = 0.9
 """Probability of the intervals."""

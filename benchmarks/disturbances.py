@@ -37,10 +37,10 @@ def _compute_white(temperature: float) -> torch.Tensor:
     return torch.linalg.solve(srgb_to_xyz(), xyz / xyz[1])
 
 
-def compress(photograph: Photograph) -> Photograph:
-    """Compress as JPEG of quality 40, with chroma at half size."""
+def compress(photograph: Photograph, quality: int = QUALITY) -> Photograph:
+    """Compress as JPEG, with chroma at half size."""
     stream = BytesIO()
-    Image.fromarray(photograph).save(stream, "JPEG", quality=QUALITY, subsampling="4:2:0")
+    Image.fromarray(photograph).save(stream, "JPEG", quality=quality, subsampling="4:2:0")
     return np.array(Image.open(stream))
 
 

@@ -6,6 +6,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from benchmarks.baselines import DARKEST
 from benchmarks.portraits import LARGEST
 from skinnet.images import Box, find_faces, frame_head, resize, segment_skin, srgb_to_linear
 from skinnet.images.faces._face_parts import FaceParts, find_face_parts
@@ -19,9 +20,6 @@ REGIONS = {
     "chin": ("chin",),
 }
 """Regions whose readings are compared, and the parts of the face that make each."""
-
-DARKEST = 0.5 / 255 / 12.92
-"""Half of the first step of eight bits, in linear light: stands for black in a logarithm."""
 
 Photograph = NDArray[np.uint8]
 

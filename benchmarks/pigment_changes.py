@@ -15,8 +15,9 @@ from benchmarks.skin_readings import read_skin
 from skinnet.images import read_picture
 from skinnet.images.srgb import LUMINANCE_WEIGHTS, linear_to_srgb, srgb_to_linear, to_uint8
 from skinnet.inference._editing import apply_change, compute_change
-from skinnet.network.autoencoder import F_BLOOD_MAX, F_MEL_MAX, SkinMaps
+from skinnet.network.autoencoder import SkinMaps
 from skinnet.physics import Capture
+from train.edited_skin import multiply_pigments
 
 FACTORS = (0.5, 0.5**0.5, 2**0.5, 2.0)
 """Factors on a pigment, whose logarithms are symmetric about zero."""
@@ -48,10 +49,8 @@ class PigmentEditor:
     def __call__(self, factors: Mapping[str, float]) -> Photograph:
         """Multiply pigments by factors; one that is not named stays."""
         maps = self.maps
-        changed = maps._replace(
-            melanin=(maps.melanin * factors.get("melanin", 1.0)).clamp_max(F_MEL_MAX),
-            hemoglobin=(maps.hemoglobin * factors.get("hemoglobin", 1.0)).clamp_max(F_BLOOD_MAX),
-        )
+        logs = torch.tensor([[factors.get(name, 1.0) for name in PIGMENTS]]).log()
+        changed = multiply_pigments(maps, logs)
         picture = read_picture(self.crop)
         picture = replace(picture, pixels=picture.pixels.copy())
         mask = maps.mask[0].numpy()

@@ -1,6 +1,5 @@
 """People in two photographs by different photographers."""
 
-import csv
 import sys
 from collections.abc import Iterator
 from pathlib import Path
@@ -9,6 +8,7 @@ from typing import NamedTuple
 from benchmarks.face_photographs import FacePhotograph, find_face
 from skinnet.images import read_photo
 from train.pair_split import choose_kept
+from train.people import read_index
 
 FOLDER = Path(__file__).parents[2] / "shared" / "data" / "faces"
 
@@ -21,15 +21,9 @@ class Person(NamedTuple):
     faces: tuple[FacePhotograph, FacePhotograph]
 
 
-def list_people(folder: Path) -> list[dict[str, str]]:
-    """List the people of a folder with an index: `person`, and the files `first` and `second`."""
-    with (folder / "index.csv").open(encoding="utf-8") as file:
-        return list(csv.DictReader(file))
-
-
 def read_people(folder: Path, every: int = 1) -> Iterator[Person]:
     """Read every nth person of a folder with an index; those without a face are left out."""
-    rows = list_people(folder)
+    rows = read_index(folder)
     kept = choose_kept([row["person"] for row in rows])
     for number, row in enumerate(rows[::every], 1):
         print(f"\rPairs: {number:,}. ", end="", file=sys.stderr)

@@ -2,7 +2,6 @@
 
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
-from pathlib import Path
 from typing import NamedTuple
 
 import numpy as np
@@ -12,13 +11,12 @@ from torch import Tensor
 
 from benchmarks.pictures import find_known
 from benchmarks.portraits import PIGMENTS
+from benchmarks.test_sets import SHARED, find_ict
 from skinnet.physics import Capture
 from train.batch import Batch
 from train.synthetic.faces import COLLATE, SyntheticFaces, SyntheticScenes
 from train.synthetic.scene import SceneParameters
 from train.synthetic.variety import Captures
-
-SHARED = Path(__file__).parents[2] / "shared" / "data"
 
 
 @dataclass(frozen=True)
@@ -51,13 +49,12 @@ class RepeatedFaces:
 
     def make_faces(self) -> SyntheticFaces:
         """Make the data, and load its heads."""
-        ict = self.ict if self.ict and Path(self.ict).is_file() else None
         data = SyntheticFaces(
             self.size,
             batch_size=self.shots,
             test_heads=self.heads,
             test_samples=self.people * self.shots,
-            ict=ict,
+            ict=find_ict(self.ict),
             geometry=self.geometry,
             optics=self.optics,
             seed=self.seed,

@@ -1,14 +1,13 @@
 """Two degradations of one photograph, whose skin is the same: small, compressed, graded."""
 
 from collections.abc import Iterable, Iterator
-from io import BytesIO
 from pathlib import Path
 from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
-from PIL import Image
 
+from benchmarks.disturbances import compress
 from benchmarks.face_photographs import FacePhotograph, find_face
 from skinnet.images import linear_to_srgb, read_photo, resize, srgb_to_linear, to_uint8
 
@@ -47,13 +46,6 @@ def change_tones(photo: Photograph, rng: np.random.Generator) -> Photograph:
     grey = graded.mean(-1, keepdims=True)
     graded = grey + np.exp(saturation) * (graded - grey)
     return to_uint8(linear_to_srgb(graded.clip(0, 1).astype(np.float32)))
-
-
-def compress(photo: Photograph, quality: int) -> Photograph:
-    """Compress as JPEG, with chroma at half size."""
-    stream = BytesIO()
-    Image.fromarray(photo).save(stream, "JPEG", quality=quality, subsampling="4:2:0")
-    return np.array(Image.open(stream))
 
 
 def read_degraded(

@@ -43,7 +43,12 @@ class TestSet:
     @property
     def ict_file(self) -> str | None:
         """The file of ICT-FaceKit, if it is there."""
-        return self.ict if self.ict and Path(self.ict).is_file() else None
+        return find_ict(self.ict)
+
+
+def find_ict(path: str | None) -> str | None:
+    """Return the path of ICT-FaceKit's file, if it is there."""
+    return path if path and Path(path).is_file() else None
 
 
 def render_test_set(settings: TestSet, decoder: SkinDecoder) -> Iterator[Pictures]:

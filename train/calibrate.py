@@ -20,7 +20,7 @@ from torch import Tensor
 
 from skinnet.errors import InputError
 from skinnet.network import SkinAutoencoder
-from skinnet.network._means import log_fraction, mean_over
+from skinnet.network._means import log_fraction, log_mean
 from train.batch import Batch
 from train.synthetic.faces import SyntheticFaces
 
@@ -85,22 +85,14 @@ def collect_evidence(model: SkinAutoencoder, batch: Batch) -> Evidence:
     assert batch.truth is not None
     maps, _, uncertainty = model.encode(batch.photograph, batch.known)
     mask, skin = batch.mask, batch.mask > 0.5
-    error = torch.stack([log_fraction(a) - log_fraction(b) for a, b in _pair(maps, batch)])
+    pairs = list(zip(maps[:2], batch.truth[:2], strict=True))
+    error = torch.stack([log_fraction(a) - log_fraction(b) for a, b in pairs])
     spread = torch.stack(uncertainty[:2])
-    means = [_log_mean(a, mask) - _log_mean(b, mask) for a, b in _pair(maps, batch)]
+    means = [log_mean(a, mask) - log_mean(b, mask) for a, b in pairs]
     shown = skin.sum((-2, -1)) > 50
     pixel = Residuals(error[:, skin][:, ::97], spread[:, skin][:, ::97])
     face = Residuals(torch.stack(means)[:, shown], uncertainty.face.mT[:, shown])
     return Evidence(pixel, face, *_collect_regions(error, spread, skin, uncertainty.face))
-
-
-def _pair(maps: tuple[Tensor, ...], batch: Batch) -> list[tuple[Tensor, Tensor]]:
-    assert batch.truth is not None
-    return list(zip(maps[:2], batch.truth[:2], strict=True))
-
-
-def _log_mean(fraction: Tensor, mask: Tensor) -> Tensor:
-    return log_fraction(mean_over(fraction, mask))
 
 
 def _collect_regions(

@@ -8,12 +8,13 @@ from lightning import Callback, LightningDataModule, Trainer
 from lightning.pytorch.callbacks import EarlyStopping, ModelCheckpoint
 
 from skinnet.errors import InputError
+from train.beside_synthetic import BesideSynthetic
 from train.fitted import FittedFaces
 from train.metrics import PIGMENTS
 from train.pairs import PortraitPairs
-from train.portraits import Portraits
 from train.synthetic.faces import SyntheticFaces
-from train.task import KINDS, LossWeights
+from train.task import KINDS
+from train.task_losses import LossWeights
 
 _LOSSES = [field.name for field in fields(LossWeights)]
 _FIRST, _LAST = _LOSSES.index("mask"), _LOSSES.index("uncertainty") + 1
@@ -33,14 +34,14 @@ def list_logged(data: LightningDataModule) -> set[str] | None:
     Returns:
         The names; None for data of the user, which may be of any kind.
     """
-    if not isinstance(data, FittedFaces | PortraitPairs | Portraits | SyntheticFaces):
+    if not isinstance(data, FittedFaces | BesideSynthetic | SyntheticFaces):
         return None
     names = {"train/loss", "val/loss"}
     names |= {f"train/{KINDS[0]}_{loss}" for loss in _WITH_TRUTH}
     names |= {f"val/{KINDS[0]}_{metric}" for metric in _METRICS + _PIGMENT_METRICS}
     if isinstance(data, PortraitPairs):
         names |= {f"train/{KINDS[1]}_{loss}" for loss in _OF_PEOPLE}
-    if isinstance(data, Portraits | PortraitPairs):
+    if isinstance(data, BesideSynthetic):
         names |= {f"train/{KINDS[1]}_{loss}" for loss in _WITHOUT_TRUTH}
         names |= {f"val/{KINDS[1]}_{metric}" for metric in _METRICS}
     return names

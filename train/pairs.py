@@ -1,23 +1,20 @@
 """People in two photographs each, without any truth but that both show the same skin."""
 
-from functools import partial
 from pathlib import Path
 from typing import Any, NamedTuple
 
 import numpy as np
 import torch
 from jsonargparse.typing import NonNegativeInt, PositiveInt
-from lightning import LightningDataModule
-from lightning.pytorch.utilities import CombinedLoader
 from torch import Tensor
 from torch.utils.data import DataLoader, Dataset
 
 from skinnet.errors import InputError
 from train.batch import Batch, People
+from train.beside_synthetic import BesideSynthetic
 from train.pair_split import choose_kept
 from train.people import Couple, PersonCrop, read_couples, read_index
 from train.rephotography import Rephotography, reframe, rephotograph, sample_rephotography
-from train.stream import StreamLoader, count_seen_samples
 from train.synthetic.faces import SyntheticFaces
 
 _EDITED_SHARE, _MOST_LOG_FACTOR = 0.5, float(np.log(2))
@@ -72,7 +69,7 @@ def _sample_factors(rng: np.random.Generator) -> Tensor:
     return torch.from_numpy(log).float()
 
 
-class PortraitPairs(LightningDataModule):
+class PortraitPairs(BesideSynthetic):
     """People in two photographs each by different photographers, beside synthetic faces.
 
     A person has the same skin in both. So the pigments that are read should agree, and what is read
@@ -111,25 +108,12 @@ class PortraitPairs(LightningDataModule):
         count = len(self.couples["train"])
         return f"{count} people in two photographs each and {self.synthetic.description}"
 
-    def prepare_data(self) -> None:
-        """Cast the synthetic heads that are missing."""
-        self.synthetic.trainer = self.trainer
-        self.synthetic.prepare_data()
+    def has_read(self) -> bool:
+        """Whether the people were read."""
+        return bool(self.couples)
 
-    def setup(self, stage: str) -> None:
-        """Read the photographs, and the synthetic heads that a stage needs."""
-        if self.synthetic.size != self.size:
-            raise InputError(
-                f"Photographs are cut to {self.size} pixels and synthetic faces have "
-                f"{self.synthetic.size}; give --data.init_args.size and "
-                "--data.init_args.synthetic.size the same number."
-            )
-        if not self.couples:
-            self._read()
-        self.synthetic.trainer = self.trainer
-        self.synthetic.setup(stage)
-
-    def _read(self) -> None:
+    def read(self) -> None:
+        """Read the photographs of all people."""
         people = [row["person"] for row in read_index(self.folder)]
         if len(set(people)) <= self.kept:
             raise InputError(
@@ -143,36 +127,19 @@ class PortraitPairs(LightningDataModule):
             "val": [couple for person, couple in couples.items() if person in kept],
         }
 
-    def train_dataloader(self) -> CombinedLoader:
-        """Make the endless loader of people and synthetic faces."""
-        people = PeopleStream(self.couples["train"], self.seed)
-        steps = max(len(people) // self.batch_size, 1)
-        seen = partial(count_seen_samples, self.trainer, self.batch_size)
-        loaders = {
-            "portraits": StreamLoader(people, self.batch_size, steps * self.batch_size, seen),
-            "synthetic": self.synthetic.stream(steps, self.trainer),
-        }
-        return CombinedLoader(loaders, "min_size")
+    def stream(self) -> PeopleStream:
+        """Stream the people of training."""
+        return PeopleStream(self.couples["train"], self.seed)
 
-    def val_dataloader(self) -> CombinedLoader:
-        """Make the loader of the people who are kept, beside synthetic faces."""
-        return self._combine(self.synthetic.val_dataloader())
+    def keep(self) -> DataLoader[tuple[Shot, Shot]]:
+        """Load the people who are kept."""
+        return DataLoader(PeopleStream(self.couples["val"], self.seed), self.batch_size)
 
-    def test_dataloader(self) -> CombinedLoader:
-        """Make the loader of the people who are kept, beside synthetic test faces."""
-        return self._combine(self.synthetic.test_dataloader())
-
-    def _combine(self, synthetic: DataLoader[Any]) -> CombinedLoader:
-        people = DataLoader(PeopleStream(self.couples["val"], self.seed), self.batch_size)
-        return CombinedLoader({"portraits": people, "synthetic": synthetic}, "max_size_cycle")
-
-    def on_after_batch_transfer(self, batch: Any, dataloader_idx: int) -> dict[str, Batch]:
-        """Change the photographs, and render the synthetic faces."""
-        shots = [self._change(shot) for shot in batch["portraits"]]
-        photographs, masks, *known = (torch.cat(parts) for parts in zip(*shots, strict=True))
-        portraits = Batch(photographs, masks, people=People(*known))
-        synthetic = self.synthetic.on_after_batch_transfer(batch["synthetic"], dataloader_idx)
-        return {"portraits": portraits, "synthetic": synthetic}
+    def make_batch(self, photographs: Any) -> Batch:
+        """Change photographs, in training, and make a batch of them."""
+        shots = [self._change(shot) for shot in photographs]
+        images, masks, *known = (torch.cat(parts) for parts in zip(*shots, strict=True))
+        return Batch(images, masks, people=People(*known))
 
     def _change(self, shot: Shot) -> tuple[Tensor, ...]:
         photograph = shot.photograph.float().movedim(-1, 1) / 255

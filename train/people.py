@@ -14,7 +14,7 @@ from skinnet.images import srgb_to_linear
 from skinnet.images._walk import Found
 from skinnet.images.faces._face_parts import FaceParts, find_face_parts
 from skinnet.images.srgb import LUMINANCE_WEIGHTS
-from train.portraits import Head, Skipped, read_head
+from train.heads import Head, Skipped, read_head
 
 REGIONS = ("forehead", "left_cheek", "right_cheek", "nose", "chin")
 """Regions that are compared; lips and eyelids are painted, and necks hidden."""

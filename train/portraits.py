@@ -3,40 +3,29 @@
 import csv
 import io
 import sys
-from functools import partial
 from pathlib import Path
 from typing import Any, NamedTuple
 
 import numpy as np
 import torch
 from jsonargparse.typing import NonNegativeInt, PositiveInt, restricted_number_type
-from lightning import LightningDataModule
-from lightning.pytorch.utilities import CombinedLoader, rank_zero_only
+from lightning.pytorch.utilities import rank_zero_only
 from numpy.typing import NDArray
 from torch.utils.data import DataLoader, Dataset
 
 from skinnet.errors import InputError
 from skinnet.files import write_text
 from skinnet.images import (
-    find_faces,
-    frame_head,
     linear_to_srgb,
-    read_photo,
-    resize,
-    segment_skin,
     srgb_to_linear,
     to_uint8,
 )
-from skinnet.images._colour_content import find_tone
 from skinnet.images._walk import Found, Walk, walk
-from skinnet.images.box import Box
-from skinnet.images.faces._largest import choose_largest
-from skinnet.images.faces.face import Face
 from train.batch import Batch
+from train.beside_synthetic import BesideSynthetic
 from train.guards import list_names
-from train.stream import StreamLoader, count_seen_samples
+from train.heads import Skipped, read_head
 from train.synthetic.faces import SyntheticFaces
-from train.synthetic.scene import SceneParameters
 
 Share = restricted_number_type("Share", float, [(">=", 0), ("<", 1)])
 
@@ -93,7 +82,7 @@ def augment(crop: Crop, rng: np.random.Generator) -> Crop:
     return crop._replace(photograph=table[crop.photograph, np.arange(3)])
 
 
-class Portraits(LightningDataModule):
+class Portraits(BesideSynthetic):
     """Photographs of faces, cropped and masked by `skinnet.images`.
 
     What is a picture is decided by the content of a file. Unreadable pictures, pictures without a
@@ -139,28 +128,12 @@ class Portraits(LightningDataModule):
         """Return one line on these data for the files of a model."""
         return f"{len(self.crops['train'])} photographs and {self.synthetic.description}"
 
-    def prepare_data(self) -> None:
-        """Find the faces, and cast the synthetic heads that are missing."""
-        if not self.crops:
-            self._find()
-        self.synthetic.trainer = self.trainer
-        self.synthetic.prepare_data()
+    def has_read(self) -> bool:
+        """Whether the faces were found."""
+        return bool(self.crops)
 
-    def setup(self, stage: str) -> None:
-        """Find the faces, and read the synthetic heads that a stage needs."""
-        if not self.crops:
-            self._find()
-        self.synthetic.trainer = self.trainer
-        self.synthetic.setup(stage)
-
-    def _find(self) -> None:
-        # This is not checked in the constructor, whose errors the parser replaces with its own.
-        if self.synthetic.size != self.size:
-            raise InputError(
-                f"Photographs are cut to {self.size} pixels and synthetic faces have "
-                f"{self.synthetic.size}; give --data.init_args.size and "
-                "--data.init_args.synthetic.size the same number."
-            )
+    def read(self) -> None:
+        """Find the faces."""
         crops, self.skipped = find_crops(self.folder, self.size, self.unreadable_share)
         order = np.random.default_rng(self.seed).permutation(len(crops))
         kept = max(1, round(self.val_share * len(crops)))
@@ -171,47 +144,19 @@ class Portraits(LightningDataModule):
             "train": [crops[index] for index in order[kept:]],
         }
 
-    def train_dataloader(self) -> CombinedLoader:
-        """Make the endless loader of photographs and synthetic faces."""
-        crops = Crops(self.crops["train"], self.seed)
-        steps = max(len(crops) // self.batch_size, 1)
-        seen = partial(count_seen_samples, self.trainer, self.batch_size)
-        loaders = {
-            "portraits": StreamLoader(crops, self.batch_size, steps * self.batch_size, seen),
-            "synthetic": self.synthetic.stream(steps, self.trainer),
-        }
-        return CombinedLoader(loaders, "min_size")
+    def stream(self) -> Crops:
+        """Stream the photographs of training."""
+        return Crops(self.crops["train"], self.seed)
 
-    def val_dataloader(self) -> CombinedLoader:
-        """Make the loader of the photographs kept for validation, beside synthetic faces."""
-        return self._combine(self.synthetic.val_dataloader())
+    def keep(self) -> DataLoader[Crop]:
+        """Load the photographs kept for validation, as they are."""
+        return DataLoader(self.crops["val"], self.batch_size)  # type: ignore[arg-type]
 
-    def test_dataloader(self) -> CombinedLoader:
-        """Make the loader of the photographs kept for validation, beside synthetic test faces."""
-        return self._combine(self.synthetic.test_dataloader())
-
-    def _combine(self, synthetic: DataLoader[SceneParameters]) -> CombinedLoader:
-        """Validation photographs as they are, beside synthetic faces; the shorter set repeats."""
-        portraits: DataLoader[Crop] = DataLoader(self.crops["val"], self.batch_size)  # type: ignore[arg-type]
-        return CombinedLoader({"portraits": portraits, "synthetic": synthetic}, "max_size_cycle")
-
-    def on_after_batch_transfer(self, batch: Any, dataloader_idx: int) -> dict[str, Batch]:
-        """Turn the crops into a batch, and render the synthetic faces."""
-        photograph, mask, *again = (part.float() / 255 for part in batch["portraits"])
-        photographs = torch.cat([photograph, *again]).movedim(-1, 1)
+    def make_batch(self, photographs: Any) -> Batch:
+        """Turn crops into a batch."""
+        photograph, mask, *again = (part.float() / 255 for part in photographs)
         masks = torch.cat([mask] * (1 + len(again)))
-        synthetic = self.synthetic.on_after_batch_transfer(batch["synthetic"], dataloader_idx)
-        portraits = Batch(photographs, masks, paired=bool(again))
-        return {"portraits": portraits, "synthetic": synthetic}
-
-
-class Skipped(NamedTuple):
-    """A file that training does not use, and the reason in words."""
-
-    path: Path
-    reason: str
-    readable: bool
-    colourless: bool = False
+        return Batch(torch.cat([photograph, *again]).movedim(-1, 1), masks, paired=bool(again))
 
 
 def find_crops(
@@ -312,57 +257,3 @@ def _report(
 def _crop_face(found: Found, size: int) -> Crop | Skipped:
     head = read_head(found)
     return head if isinstance(head, Skipped) else Crop(head.cut(size), head.cut_mask(size))
-
-
-class Head(NamedTuple):
-    """A photograph, uint8 sRGB [H, W, 3], the largest face in it, and the box of its head."""
-
-    photo: NDArray[np.uint8]
-    face: Face
-    box: Box
-
-    def cut(self, size: int) -> NDArray[np.uint8]:
-        """Cut the head out, with its longer side at `size` pixels and padded to a square."""
-        width, height = self._measure(size)
-        pad = ((0, size - height), (0, size - width), (0, 0))
-        return np.pad(resize(self.photo[self.box.slices], width, height), pad, mode="edge")
-
-    def cut_mask(self, size: int) -> NDArray[np.uint8]:
-        """The estimated skin of `cut`, which is 0 where it is padded."""
-        return self.cut_layer(segment_skin(self.photo, self.face), size)
-
-    def cut_layer(self, layer: NDArray[np.float32], size: int) -> NDArray[np.uint8]:
-        """Cut a layer [H, W] in [0, 1] of the photograph as `cut` does."""
-        width, height = self._measure(size)
-        small = (255 * resize(layer[self.box.slices], width, height)).round().astype(np.uint8)
-        return np.pad(small, ((0, size - height), (0, size - width)))
-
-    def _measure(self, size: int) -> tuple[int, int]:
-        scale = size / max(self.box.width, self.box.height)
-        return max(1, round(self.box.width * scale)), max(1, round(self.box.height * scale))
-
-
-def read_head(found: Found) -> Head | Skipped:
-    """Read a picture and find the largest face in it.
-
-    Args:
-        found: The picture's path.
-
-    Returns:
-        The head, or why there is none.
-    """
-    path = Path(found.path)
-    if found.error is not None:
-        return Skipped(path, str(found.error), readable=False)
-    try:
-        photo = read_photo(path)
-    except InputError as error:
-        return Skipped(path, str(error), readable=False)
-    face = choose_largest(find_faces(photo))
-    if face is None:
-        return Skipped(path, "No face was found in it.", readable=True)
-    box = frame_head(face.box, photo.shape[1], photo.shape[0])
-    tone = find_tone(photo, box, face.box)
-    if tone is not None:
-        return Skipped(path, f"It has no colour: {tone}.", readable=True, colourless=True)
-    return Head(photo, face, box)

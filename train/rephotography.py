@@ -12,6 +12,7 @@ from torch import Tensor
 from train.synthetic.photography.processing import grade, resample
 from train.synthetic.photography.simulated_camera import apply_tone_curve, compress
 from train.synthetic.sampling.wide_captures import (
+    WARMING,
     make_no_processing,
     sample_processing,
 )
@@ -19,7 +20,6 @@ from train.synthetic.scene import ProcessingParameters, map_tensors
 from train.synthetic.tensors import expand_colour, make_tensors
 
 _WARMTH_SD, _GREEN_SD, _EXPOSURE_SD = 16.0, 0.03, 0.25
-_WARMING = np.array([0.0035, 0.0, -0.0065])
 _ANGLE_SD, _ZOOM_SD, _SHIFT_SD = 0.07, 0.08, 0.06
 """Spreads of the framing: in radians, of the logarithm, and in halves of the picture."""
 
@@ -49,7 +49,7 @@ def sample_rephotography(rng: np.random.Generator) -> Rephotography:
     if rng.random() < _UNCHANGED_SHARE:
         one, zero = torch.tensor(1.0), torch.tensor(0.0)
         return Rephotography(framing, one.expand(3), zero.expand(2), make_no_processing(), zero)
-    log = rng.normal(0, _WARMTH_SD) * _WARMING + rng.normal(0, _EXPOSURE_SD)
+    log = rng.normal(0, _WARMTH_SD) * WARMING + rng.normal(0, _EXPOSURE_SD)
     log[1] -= rng.normal(0, _GREEN_SD)
     change = Rephotography(
         framing,

@@ -40,11 +40,15 @@ def has_sound_pixels(data: bytes) -> bool:
 def insert_chunks(data: bytes, chunks: Iterable[Chunk]) -> bytes:
     """Insert chunks after the header of a PNG file, which has no others before its pixels."""
     head = len(SIGNATURE) + 25
-    new = (
-        struct.pack(">I", len(body)) + name + body + struct.pack(">I", zlib.crc32(name + body))
-        for name, body in chunks
-    )
-    return b"".join((data[:head], *new, data[head:]))
+    return b"".join((data[:head], *pack_chunks(chunks), data[head:]))
+
+
+def pack_chunks(chunks: Iterable[Chunk]) -> Iterator[bytes]:
+    """Pack chunks as a file holds them, in parts, so that a large content is not copied."""
+    for name, body in chunks:
+        yield struct.pack(">I", len(body)) + name
+        yield body
+        yield struct.pack(">I", zlib.crc32(body, zlib.crc32(name)))
 
 
 def read_key(chunk: Chunk) -> str:

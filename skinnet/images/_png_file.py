@@ -1,16 +1,15 @@
 """Writer of plain PNG files (ISO/IEC 15948): pictures and 16-bit maps with texts."""
 
 import struct
-import zlib
 from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
-from PIL import PngImagePlugin
 
 from skinnet.files import write_atomically
+from skinnet.images._chunks import SIGNATURE, make_text, pack_chunks
 
 _HEADERS = {(np.dtype(np.uint8), (3,)): (8, 2), (np.dtype(np.uint16), ()): (16, 0)}
 """Bits of a channel and colour type of each kind of array."""
@@ -43,21 +42,18 @@ def write_png(path: Path, array: NDArray[Any], text: Mapping[str, str] | None = 
     kind = (array.dtype, array.shape[2:])
     if kind not in _HEADERS:
         raise ValueError(f"PNG is written from uint8 [H, W, 3] or uint16 [H, W]; got {kind}.")
-    info = PngImagePlugin.PngInfo()
-    for key, value in (text or {}).items():
-        info.add_text(key, value)
     height, width = array.shape[:2]
     header = struct.pack(">IIBBBBB", width, height, *_HEADERS[kind], 0, 0, 0)
     # The fast level: the low bits of interpolated maps are noise that no level compresses.
-    content = deflate_encode(_filter_rows(array), level=1)  # type: ignore[arg-type]  # any buffer
-    texts = [(name, data) for name, data, *_ in info.chunks]
+    content: Any = deflate_encode(
+        _filter_rows(array),  # type: ignore[arg-type]  # any buffer
+        level=1,
+    )
+    texts = [make_text(key, value) for key, value in (text or {}).items()]
     chunks = [(b"IHDR", header), *texts, (b"IDAT", content), (b"IEND", b"")]
     with write_atomically(path) as part, part.open("wb") as file:
-        file.write(b"\x89PNG\r\n\x1a\n")
-        for name, data in chunks:
-            file.write(struct.pack(">I", len(data)) + name)
-            file.write(data)
-            file.write(struct.pack(">I", zlib.crc32(data, zlib.crc32(name))))
+        file.write(SIGNATURE)
+        file.writelines(pack_chunks(chunks))
 
 
 def _filter_rows(array: NDArray[Any]) -> NDArray[np.uint8]:

@@ -8,7 +8,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from skinnet.errors import InputError
-from skinnet.inference.onnx_model import CAPTURE_NAMES, OnnxModel
+from skinnet.inference.capture import Capture
+from skinnet.inference.onnx_model import OnnxModel
 
 _KELVIN = 4000.0, 25000.0
 """Range of colour temperatures of daylight."""
@@ -60,11 +61,11 @@ def make_capture_inputs(capture: CaptureLike, encoder: OnnxModel) -> Inputs:
             f"capture is a skinnet.inference.Capture; got a {type(capture).__name__}. "
             "Capture(temperature=5500.0) is one."
         )
-    light = _order_lights(capture.light, encoder.lights)
-    others = {name: getattr(capture, name) for name in (*CAPTURE_NAMES[1:], "linear", "exposure")}
+    parts = {name: getattr(capture, name) for name in Capture._fields}
+    parts["light"] = _order_lights(capture.light, encoder.lights)
     shapes = {one.name: one.shape[1:] for one in encoder.session.get_overridable_initializers()}
     inputs: Inputs = {}
-    for name, part in {"light": light, **others}.items():
+    for name, part in parts.items():
         shape = shapes[f"known_{name}"]
         values = _read_numbers(name, part, shape[0] if shape else 1)
         if values is not None:

@@ -20,6 +20,7 @@ from skinnet.inference._onnx_session import (
     name_versions,
     open_session,
 )
+from skinnet.inference.capture import Capture
 
 ONNX_FORMAT = "2"
 """Version of the inputs, outputs and metadata of a file."""
@@ -33,7 +34,7 @@ MAP_NAMES = ("melanin", "hemoglobin", "shading", "specular", "offset")
 CAPTURE_NAMES = ("light", "temperature", "camera", "white_balance")
 """Light and camera of a photograph: outputs of the encoder and inputs of the decoder."""
 
-_KNOWN_NAMES = tuple(f"known_{name}" for name in (*CAPTURE_NAMES, "linear", "exposure"))
+_KNOWN_NAMES = tuple(f"known_{name}" for name in Capture._fields)
 """What may be known of a capture: optional inputs of the encoder; NaN is what is not known."""
 
 _SD_NAMES = ("melanin_sd", "hemoglobin_sd")

@@ -4,13 +4,12 @@ The second half of a batch shows the people of the first half in other photograp
 [batch, height, width], and a mask holds the probability that a pixel is skin.
 """
 
-import math
-
 import torch
 from jaxtyping import Bool, Float, Int64
 from torch import Tensor
+from torch.distributions import StudentT
 
-from skinnet.network._means import Map, Scalar, cube_root, log_fraction, mean_over
+from skinnet.network._means import Map, Scalar, cube_root, log_mean, mean_over, normal_score
 from skinnet.network.autoencoder import F_BLOOD_MAX, F_MEL_MAX, SkinMaps, Uncertainty
 from skinnet.physics.decoder import SkinDecoder
 from skinnet.physics.srgb import luminance
@@ -111,13 +110,9 @@ def colour_prediction(
     """
     own = measure_skin_colour(maps, mask, decoder) + shift
     other = torch.cat(colour.chunk(2)[::-1])
-    distance = ((own - other) / log_scale.exp()) ** 2
-    constant = (
-        math.lgamma(_FREEDOM / 2)
-        + 0.5 * math.log(_FREEDOM * math.pi)
-        - math.lgamma((_FREEDOM + 1) / 2)
-    )
-    score = (_FREEDOM + 1) / 2 * (distance / _FREEDOM).log1p() + log_scale + constant
+    # Not validated: training says in words which loss is not finite.
+    captures = StudentT(_FREEDOM, own, log_scale.exp(), validate_args=False)
+    score: Tensor = -captures.log_prob(other)
     return score.mean()
 
 
@@ -175,7 +170,7 @@ def agreement_likelihood(maps: SkinMaps, uncertainty: Uncertainty, mask: Map) ->
         >>> abs(agreement_likelihood(maps, certain, mask).item()) < 1e-6
         True
     """
-    logs = [log_fraction(mean_over(one.detach(), mask)) for one in maps[:2]]
+    logs = [log_mean(one.detach(), mask) for one in maps[:2]]
     first, second = torch.stack(logs, -1).chunk(2)
     variance = torch.stack((uncertainty.face**2).chunk(2)).sum(0)
-    return (variance.log() / 2 + (first - second) ** 2 / (2 * variance)).mean()
+    return normal_score(first - second, variance).mean()

@@ -164,10 +164,15 @@ class _AttentionPooling(nn.Module):
         attention = self.attention(x).flatten(2).softmax(-1).float()
         weights, confidence = attention.split([_POOLED_COLOURS, 1], 1)
         chroma = 10 * (small[:, ::2] - small[:, 1:2]) - self.expected_chroma(x)
-        # Sums rather than matrix products, which autocast would compute with eight bits of
-        # precision. The tint needs more.
-        colours = (weights[:, :, None] * small.flatten(2)[:, None]).sum(-1)
-        return colours.flatten(1), (confidence * chroma.flatten(2)).sum(-1)
+        tint = (confidence * chroma.flatten(2)).sum(-1)
+        return _pool_colours(weights, small), tint
+
+
+def _pool_colours(
+    weights: Float[Tensor, "batch places pixels"], log: Float[Tensor, "batch 3 h w"]
+) -> Float[Tensor, "batch colours"]:
+    # Sums rather than matrix products, which autocast would compute with eight bits of precision.
+    return (weights[:, :, None] * log.flatten(2)[:, None]).sum(-1).flatten(1)
 
 
 class _Places(nn.Module):
@@ -192,9 +197,7 @@ class _Places(nn.Module):
         small = F.interpolate(log, size=features.shape[-2:], mode="bilinear")
         x = self.conv(torch.cat([features, small], 1)).relu()
         weights = self.attention(x).flatten(2).softmax(-1).float()
-        # Sums rather than matrix products, as in `_AttentionPooling`.
-        colours = (weights[:, :, None] * small.flatten(2)[:, None]).sum(-1)
-        compared: Tensor = self.compare(colours.flatten(1))
+        compared: Tensor = self.compare(_pool_colours(weights, small))
         return compared
 
 

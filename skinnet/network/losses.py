@@ -7,15 +7,14 @@ Images are linear sRGB [batch, 3, height, width], maps are [batch, height, width
 the probability that a pixel is skin.
 """
 
-from torch import Tensor
-
 from skinnet.network._means import (
     Image,
     Map,
     Scalar,
     cube_root,
     log_fraction,
-    mean_over,
+    log_mean,
+    normal_score,
     weighted_mean,
 )
 from skinnet.network.autoencoder import F_BLOOD_MAX, F_MEL_MAX, SkinMaps, Uncertainty
@@ -286,15 +285,12 @@ def pigment_likelihood(maps: SkinMaps, uncertainty: Uncertainty, truth: SkinMaps
     """
     spreads = uncertainty.melanin, uncertainty.hemoglobin
     faces = uncertainty.face.unbind(-1)
+    shown = (truth.mask.sum((-2, -1)) > 1).to(truth.mask)
     total = truth.mask.new_zeros(())
     for guess, true, pixel, face in zip(maps[:2], truth[:2], spreads, faces, strict=True):
-        error = log_fraction(guess).detach() - log_fraction(true)
-        total = total + weighted_mean(_score(error, pixel), truth.mask)
-        means = (log_fraction(mean_over(one, truth.mask)) for one in (guess.detach(), true))
-        shown = (truth.mask.sum((-2, -1)) > 1).to(face)
-        total = total + (_score(next(means) - next(means), face) * shown).mean()
+        guess = guess.detach()
+        error = log_fraction(guess) - log_fraction(true)
+        total = total + weighted_mean(normal_score(error, pixel**2), truth.mask)
+        error = log_mean(guess, truth.mask) - log_mean(true, truth.mask)
+        total = total + (normal_score(error, face**2) * shown).mean()
     return total / 2
-
-
-def _score(error: Tensor, deviation: Tensor) -> Tensor:
-    return deviation.log() + (error / deviation) ** 2 / 2

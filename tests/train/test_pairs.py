@@ -85,13 +85,13 @@ def make_data(folder: Path, kept: int = 1) -> PortraitPairs:
 
 def test_those_who_are_kept_are_never_trained_on(folder: Path) -> None:
     data = make_data(folder)
-    data._read()
+    data.read()
     (kept,) = choose_kept(PEOPLE, 1)
     alone = read_couples(folder, {kept}, 32)[kept]
     assert len(data.couples["train"]) == 2
     assert np.array_equal(data.couples["val"][0][0].photograph, alone[0].photograph)
     with pytest.raises(InputError, match="shows 3 people and 3 are kept"):
-        make_data(folder, 3)._read()
+        make_data(folder, 3).read()
 
 
 def test_sizes_must_agree(folder: Path) -> None:

@@ -20,13 +20,13 @@ def tell_capture(camera: CameraParameters, capture: Capture) -> Capture:
         The captures as the network is told them.
     """
     known = camera.known
-    assert capture.exposure is not None
+    assert capture.linear is not None and capture.exposure is not None
     parts = {
         "light": (known.light, capture.light),
         "temperature": (known.temperature, capture.temperature),
         "camera": (known.camera, capture.camera),
         "white_balance": (known.white, capture.white_balance + known.white_error),
-        "linear": (known.linear, camera.linear),
+        "linear": (known.linear, capture.linear),
         "exposure": (known.exposure, capture.exposure),
     }
     return Capture(**{name: _hide(flag, value) for name, (flag, value) in parts.items()})

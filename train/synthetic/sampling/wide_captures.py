@@ -34,7 +34,7 @@ _COLOURLESS_SHARE = 0.015
 _LINEAR_SHARE = 0.12
 _MIXED_SHARE, _COLOURED_SHARE, _FLASH_SHARE = 0.35, 0.04, 0.15
 
-_WARMING = np.array([0.0035, 0.0, -0.0065])
+WARMING = np.array([0.0035, 0.0, -0.0065])
 """Log R, G and B of linear sRGB per mired that a light is warmer."""
 
 _BLIND_SHARE, _KNOWN_SHARE = 0.45, 0.6
@@ -168,7 +168,7 @@ def _add_flash(light: LightParameters, rng: np.random.Generator) -> LightParamet
 
 
 def _sample_mixture(rng: np.random.Generator) -> Float[np.ndarray, "lights"]:
-    """Mostly one light; daylight half of the time."""
+    """Mostly one light; daylight in more than three of four pictures."""
     first = 0 if rng.random() < 0.75 else rng.integers(1, len(LIGHTS))
     mixture = rng.dirichlet(np.full(len(LIGHTS), 0.3)) * rng.choice([0, rng.uniform(0, 0.5)])
     mixture[first] += 1 - mixture.sum()
@@ -181,7 +181,7 @@ def _sample_tints(
     """Tints whose mean over all light is about neutral, as a camera balances it."""
     tints = np.zeros((SOURCES, 3))
     if rng.random() < _MIXED_SHARE:
-        tints += rng.normal(0, 40, (SOURCES, 1)) * _WARMING
+        tints += rng.normal(0, 40, (SOURCES, 1)) * WARMING
     if rng.random() < _COLOURED_SHARE:
         tints[1 + rng.integers(LAMPS)] += rng.normal(0, 0.5, 3)
     tints -= tints[:, 1:2]
