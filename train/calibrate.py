@@ -139,6 +139,7 @@ def main(argv: Sequence[str] | None = None) -> int:
     parser.add_argument("--samples", type=int, default=768, help="Pictures.")
     given = parser.parse_args(argv)
     try:
+        _check_counts(given.heads, given.samples)
         model = SkinAutoencoder.from_pretrained(given.model)
         calibrate(model, render_faces(model, given))
         model.save_pretrained(given.output)
@@ -149,6 +150,14 @@ def main(argv: Sequence[str] | None = None) -> int:
         f"{given.output}: scales {model.sd_scale.tolist()}, regions {model.region_share.tolist()}"
     )
     return 0
+
+
+def _check_counts(heads: int, samples: int) -> None:
+    if min(heads, samples) < 1:
+        raise InputError(
+            f"Calibration needs a head and a picture or more; got --heads {heads} and --samples "
+            f"{samples}."
+        )
 
 
 def render_faces(model: SkinAutoencoder, given: argparse.Namespace) -> Iterable[Batch]:

@@ -126,6 +126,13 @@ class PortraitPairs(BesideSynthetic):
             "train": [couple for person, couple in couples.items() if person not in kept],
             "val": [couple for person, couple in couples.items() if person in kept],
         }
+        for split, some in self.couples.items():
+            if not some:
+                what = "kept for testing" if split == "val" else "trained on"
+                raise InputError(
+                    f"{self.folder} shows nobody in two usable photographs of the people that are "
+                    f"{what}; give more people, or another number --data.init_args.kept."
+                )
 
     def stream(self) -> PeopleStream:
         """Stream the people of training."""

@@ -68,7 +68,7 @@ def read_couples(folder: Path, people: set[str] | None, size: int) -> dict[str, 
         if both[0] is not None and both[1] is not None:
             couples[row["person"]] = both[0], both[1]
         print(f"\rPeople of {folder}: {number} of {len(rows)} read.", end="", file=sys.stderr)
-    print(file=sys.stderr)
+    print(f"\n{folder}: {len(rows) - len(couples)} people left out.", file=sys.stderr)
     if not couples:
         raise InputError(f"{folder} shows no person in two usable photographs.")
     return couples

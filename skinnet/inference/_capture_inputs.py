@@ -14,8 +14,12 @@ from skinnet.inference.onnx_model import OnnxModel
 _KELVIN = 4000.0, 25000.0
 """Range of colour temperatures of daylight."""
 
-_MOST_EXPOSED = 4.0
-"""Beyond it skin of every tone is black or white in a photograph."""
+_LARGEST = {
+    "camera": ("coefficients in standard deviations of cameras", 10.0),
+    "white_balance": ("natural logarithms of the errors in R/G and B/G", 2.0),
+    "exposure": ("the natural logarithm of the luminance of white in the photograph", 4.0),
+}
+"""What parts are, and how far from 0 they may be: no camera and no photograph of skin is beyond."""
 
 
 @runtime_checkable
@@ -123,10 +127,12 @@ def _check_values(name: str, values: NDArray[np.float64]) -> NDArray[np.float64]
             f"temperature of a capture is that of daylight, {_KELVIN[0]:,.0f} to "
             f"{_KELVIN[1]:,.0f} K; got {values[0]:g}. Lamps are among the lights."
         )
-    if name == "exposure" and abs(values[0]) > _MOST_EXPOSED:
+    what, largest = _LARGEST.get(name, ("", np.inf))
+    farthest = values[np.abs(values).argmax()]
+    if abs(farthest) > largest:
         raise InputError(
-            f"exposure of a capture is the natural logarithm of the luminance of white in the "
-            f"photograph, between -{_MOST_EXPOSED:g} and {_MOST_EXPOSED:g}; got {values[0]:g}."
+            f"{name} of a capture is {what}, between -{largest:g} and {largest:g}; got "
+            f"{farthest:g}."
         )
     if name == "linear" and values[0] not in (0, 1):
         raise InputError(

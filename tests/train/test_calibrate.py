@@ -75,3 +75,8 @@ def test_a_model_is_calibrated_and_saved(casts: Path, tmp_path: Path) -> None:
 def test_a_missing_model_is_refused(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     assert main([str(tmp_path / "a.ckpt"), "-o", str(tmp_path / "b.safetensors")]) == 2
     assert "There is no checkpoint" in capsys.readouterr().err
+
+
+def test_no_pictures_are_refused(capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(["a.safetensors", "-o", "b.safetensors", "--samples", "0"]) == 2
+    assert "got --heads 64 and --samples 0" in capsys.readouterr().err

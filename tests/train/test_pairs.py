@@ -54,11 +54,14 @@ def test_the_colour_is_that_of_the_median() -> None:
     np.testing.assert_allclose(measure_colour(skin)[:2], expected, rtol=1e-4)
 
 
-def test_people_without_two_usable_photographs_are_left_out(folder: Path, tmp_path: Path) -> None:
+def test_people_without_two_usable_photographs_are_left_out(
+    folder: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
     for file in folder.iterdir():
         (tmp_path / file.name).write_bytes(file.read_bytes())
     Image.new("RGB", (80, 80)).save(tmp_path / "Bo_2.png")
     assert set(read_couples(tmp_path, None, 32)) == {"Ada", "Cy"}
+    assert f"{tmp_path}: 1 people left out" in capsys.readouterr().err
     assert set(read_couples(tmp_path, {"Cy"}, 32)) == {"Cy"}
     with pytest.raises(InputError, match="shows no person in two usable photographs"):
         read_couples(tmp_path, {"Bo"}, 32)
@@ -92,6 +95,15 @@ def test_those_who_are_kept_are_never_trained_on(folder: Path) -> None:
     assert np.array_equal(data.couples["val"][0][0].photograph, alone[0].photograph)
     with pytest.raises(InputError, match="shows 3 people and 3 are kept"):
         make_data(folder, 3).read()
+
+
+def test_each_part_needs_somebody(folder: Path, tmp_path: Path) -> None:
+    for file in folder.iterdir():
+        (tmp_path / file.name).write_bytes(file.read_bytes())
+    (kept,) = choose_kept(PEOPLE, 1)
+    Image.new("RGB", (80, 80)).save(tmp_path / f"{kept}_2.png")
+    with pytest.raises(InputError, match="that are kept for testing"):
+        make_data(tmp_path).read()
 
 
 def test_sizes_must_agree(folder: Path) -> None:

@@ -127,3 +127,18 @@ def test_edits_take_what_is_known(astronaut: np.ndarray) -> None:
     assert not np.array_equal(plain, warm)
     with pytest.raises(InputError, match="temperature of a capture"):
         decomposer.edit(astronaut, melanin=2.0, capture=Capture(temperature=1.0))
+
+
+@pytest.mark.parametrize(
+    ("capture", "message"),
+    [
+        (Capture(white_balance=(0.1, -30.0)), "between -2 and 2; got -30"),
+        (Capture(camera=[0.0, 500.0, 0.0, 0.0, 0.0, 0.0]), "between -10 and 10; got 500"),
+        (Capture(exposure=5.0), "between -4 and 4; got 5"),
+    ],
+)
+def test_what_no_photograph_has_is_refused(
+    capture: Capture, message: str, encoder: OnnxModel
+) -> None:
+    with pytest.raises(InputError, match=message):
+        make_capture_inputs(capture, encoder)
