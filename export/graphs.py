@@ -14,6 +14,7 @@ from skinnet.network import (
     WHITE_BALANCE_MAX,
     SkinAutoencoder,
 )
+from skinnet.network._tone_factors import find_range
 from skinnet.network.autoencoder import LOG_SD_RANGE
 from skinnet.physics import CAMERA_COMPONENTS, LIGHTS, Capture, SkinDecoder, to_display
 
@@ -106,10 +107,13 @@ class DecoderGraph(nn.Module):
 
 def describe_outputs(model: SkinAutoencoder) -> dict[str, Output]:
     """Describe the encoder's outputs, with the ranges of this model's standard deviations."""
-    (melanin, hemoglobin), face = model.sd_scale.tolist()
-    scales = {"melanin_sd": [melanin], "hemoglobin_sd": [hemoglobin], "face_sd": face}
+    least, most = find_range(model.sd_scale, model.sd_by_tone)
     low, high = LOG_SD_RANGE
-    ranges = {name: [low * min(each), high * max(each)] for name, each in scales.items()}
+    ranges = {
+        "melanin_sd": [low * float(least[0, 0]), high * float(most[0, 0])],
+        "hemoglobin_sd": [low * float(least[0, 1]), high * float(most[0, 1])],
+        "face_sd": [low * float(least[1].min()), high * float(most[1].max())],
+    }
     return OUTPUTS | {name: OUTPUTS[name] | {"range": ends} for name, ends in ranges.items()}
 
 

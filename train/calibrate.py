@@ -2,7 +2,8 @@
 
 On synthetic validation faces in wide captures, half of which tell something of their capture, the
 standard deviations of pixels and of faces are scaled so that 90 % of the errors lie within the 90 %
-intervals. The share of the pixels' own variance that remains in the mean of a region is measured on
+intervals, in each of six groups of the faces' true melanin. The factors depend on the melanin that
+is read. The share of the pixels' own variance that remains in the mean of a region is measured on
 squares of an eighth of the picture.
 """
 
@@ -15,32 +16,18 @@ from typing import NamedTuple
 import torch
 import torch.nn.functional as F
 from jaxtyping import Float
-from scipy.stats import norm
 from torch import Tensor
 
 from skinnet.errors import InputError
 from skinnet.network import SkinAutoencoder
 from skinnet.network._means import log_fraction, log_mean
+from skinnet.network._tone_factors import find_factors, measure_tone
 from train.batch import Batch
+from train.residuals import Residuals, join_residuals
 from train.synthetic.faces import SyntheticFaces
-
-LEVEL = 0.9
-"""Level of the intervals that are made right."""
 
 _LEAST_SKIN = 0.9
 """Share of a square that is skin, for the square to count as a region."""
-
-
-class Residuals(NamedTuple):
-    """Errors of natural logarithms of melanin and hemoglobin, and their stated deviations."""
-
-    error: Float[Tensor, "2 count"]
-    deviation: Float[Tensor, "2 count"]
-
-    def find_scale(self) -> Float[Tensor, "2"]:
-        """Find the factors on the deviations with which a share `LEVEL` lies within."""
-        ratio = (self.error.abs() / self.deviation).quantile(LEVEL, dim=1)
-        return ratio / norm.ppf((1 + LEVEL) / 2)
 
 
 class Evidence(NamedTuple):
@@ -54,21 +41,20 @@ class Evidence(NamedTuple):
 
 @torch.no_grad()
 def calibrate(model: SkinAutoencoder, batches: Iterable[Batch]) -> None:
-    """Set `sd_scale` and `region_share` of a model, in place.
+    """Set `sd_scale`, `sd_by_tone` and `region_share` of a model, in place.
 
     Args:
         model: A trained model.
         batches: Rendered pictures that training did not see.
     """
     model.sd_scale.fill_(1)
+    model.sd_by_tone.fill_(0)
     found = join([collect_evidence(model, batch) for batch in batches])
-    model.sd_scale.copy_(torch.stack([found.pixel.find_scale(), found.face.find_scale()]))
-    pixel, face = (
-        scale[:, None] * deviation
-        for scale, deviation in zip(
-            model.sd_scale, (found.region.deviation, found.region_face), strict=True
-        )
-    )
+    scales, by_tone = zip(*(one.find_scale() for one in (found.pixel, found.face)), strict=True)
+    model.sd_scale.copy_(torch.stack(scales))
+    model.sd_by_tone.copy_(torch.stack(by_tone))
+    factors = find_factors(found.region.tone, model.sd_scale, model.sd_by_tone)
+    pixel, face = factors[0] * found.region.deviation, factors[1] * found.region_face
     excess = (pixel**2 - face**2).clamp_min(0)
     observed = _squash(found.region.error) - face**2
     model.region_share.copy_(((observed * excess).sum(1) / (excess**2).sum(1)).clamp(0, 1))
@@ -89,36 +75,41 @@ def collect_evidence(model: SkinAutoencoder, batch: Batch) -> Evidence:
     error = torch.stack([log_fraction(a) - log_fraction(b) for a, b in pairs])
     spread = torch.stack(uncertainty[:2])
     means = [log_mean(a, mask) - log_mean(b, mask) for a, b in pairs]
+    tones = torch.stack(
+        [measure_tone(maps.melanin, maps.mask), log_mean(batch.truth.melanin, mask)]
+    )
     shown = skin.sum((-2, -1)) > 50
-    pixel = Residuals(error[:, skin][:, ::97], spread[:, skin][:, ::97])
-    face = Residuals(torch.stack(means)[:, shown], uncertainty.face.mT[:, shown])
-    return Evidence(pixel, face, *_collect_regions(error, spread, skin, uncertainty.face))
+    pixel = tones[:, :, None, None].expand(-1, *skin.shape)[:, skin][:, ::97]
+    return Evidence(
+        Residuals(error[:, skin][:, ::97], spread[:, skin][:, ::97], *pixel),
+        Residuals(torch.stack(means)[:, shown], uncertainty.face.mT[:, shown], *tones[:, shown]),
+        *_collect_regions(error, spread, skin, torch.cat([tones, uncertainty.face.mT])),
+    )
 
 
 def _collect_regions(
-    error: Tensor, spread: Tensor, skin: Tensor, face: Tensor
+    error: Tensor, spread: Tensor, skin: Tensor, of_faces: Float[Tensor, "4 batch"]
 ) -> tuple[Residuals, Tensor]:
+    """Residuals of squares of skin, and the deviations of their faces.
+
+    `of_faces` holds both tones of each face, and both of its deviations.
+    """
     side = skin.shape[-1] // 8
     whole = F.avg_pool2d(skin[:, None].float(), side)[:, 0] > _LEAST_SKIN
     mean_error = F.avg_pool2d(error, side)[:, whole]
     mean_spread = F.avg_pool2d(spread**2, side).sqrt()[:, whole]
-    own = face.mT[:, :, None, None].expand(-1, -1, *whole.shape[1:])[:, whole]
-    return Residuals(mean_error, mean_spread), own
+    own = of_faces[:, :, None, None].expand(-1, -1, *whole.shape[1:])[:, whole]
+    return Residuals(mean_error, mean_spread, *own[:2]), own[2:]
 
 
 def join(parts: Sequence[Evidence]) -> Evidence:
     """Join the evidence of several batches."""
     return Evidence(
-        _join_residuals([part.pixel for part in parts]),
-        _join_residuals([part.face for part in parts]),
-        _join_residuals([part.region for part in parts]),
+        join_residuals([part.pixel for part in parts]),
+        join_residuals([part.face for part in parts]),
+        join_residuals([part.region for part in parts]),
         torch.cat([part.region_face for part in parts], 1),
     )
-
-
-def _join_residuals(parts: Sequence[Residuals]) -> Residuals:
-    error, deviation = (torch.cat(one, 1) for one in zip(*parts, strict=True))
-    return Residuals(error, deviation)
 
 
 def main(argv: Sequence[str] | None = None) -> int:

@@ -121,7 +121,7 @@ class PortraitPairs(BesideSynthetic):
                 "testing; give --data.init_args.kept a smaller number."
             )
         kept = choose_kept(people, self.kept)
-        couples = read_couples(self.folder, None, self.size)
+        couples = read_couples(self.folder, self.size)
         self.couples = {
             "train": [couple for person, couple in couples.items() if person not in kept],
             "val": [couple for person, couple in couples.items() if person in kept],

@@ -46,13 +46,12 @@ class PersonCrop(NamedTuple):
 Couple = tuple[PersonCrop, PersonCrop]
 
 
-def read_couples(folder: Path, people: set[str] | None, size: int) -> dict[str, Couple]:
+def read_couples(folder: Path, size: int) -> dict[str, Couple]:
     """Read the photographs of people, two of each.
 
     Args:
         folder: Holds the photographs and `index.csv`, whose columns `person`, `first` and `second`
             name a person and the files of two photographs.
-        people: Those who are read; None for all.
         size: Side of the crops in pixels.
 
     Returns:
@@ -62,7 +61,7 @@ def read_couples(folder: Path, people: set[str] | None, size: int) -> dict[str, 
         InputError: If there is no such index, or nobody can be read.
     """
     couples = {}
-    rows = [row for row in read_index(folder) if people is None or row["person"] in people]
+    rows = read_index(folder)
     for number, row in enumerate(rows, 1):
         both = [crop_person(folder / row[name], size) for name in ("first", "second")]
         if both[0] is not None and both[1] is not None:

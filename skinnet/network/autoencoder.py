@@ -12,6 +12,7 @@ from torch import Tensor, nn
 
 from skinnet.network._earlier_weights import EARLIER_FORMAT, upgrade_config, upgrade_weights
 from skinnet.network._known_capture import KNOWN_VALUES, KnownCapture
+from skinnet.network._tone_factors import find_factors, measure_tone
 from skinnet.network._weights import (
     SHIPPED_WEIGHTS,
     SavedModel,
@@ -131,14 +132,14 @@ def _activate_capture(
 def _activate_uncertainty(
     maps: Float[Tensor, "batch 7 height width"],
     global_outputs: Float[Tensor, "batch globals"],
-    scale: Float[Tensor, "2 2"],
+    factors: Float[Tensor, "2 2 batch"],
 ) -> Uncertainty:
-    """Map raw values to standard deviations, times a scale for pixels and one for faces."""
+    """Map raw values to standard deviations, times factors for pixels and for faces."""
     low, high = map(math.log, LOG_SD_RANGE)
     pixel, face = (
         (low + (high - low) * raw.sigmoid()).exp() for raw in (maps[:, 5:], global_outputs[:, -2:])
     )
-    pixel, face = pixel * scale[0, :, None, None], face * scale[1]
+    pixel, face = pixel * factors[0].mT[..., None, None], face * factors[1].mT
     melanin, hemoglobin = pixel.unbind(1)
     return Uncertainty(melanin, hemoglobin, face)
 
@@ -203,7 +204,10 @@ class SkinAutoencoder(nn.Module):
         config: Configuration of the model.
         trained_on: One line on the training data, which is written into files of the model.
         sd_scale: Factors on the standard deviations of melanin and hemoglobin, of pixels in the
-            first row and of faces in the second; they are calibrated after training.
+            first row and of faces in the second, for a face whose melanin is .05; they are
+            calibrated after training.
+        sd_by_tone: How the logarithms of these factors change with the natural logarithm of the
+            face's melanin: coefficients of it and of its square.
         region_share: Of melanin and hemoglobin: how much of the variance that pixels have beyond
             that of the face remains in the mean of a region; calibrated after training.
 
@@ -222,6 +226,7 @@ class SkinAutoencoder(nn.Module):
     """
 
     sd_scale: Tensor
+    sd_by_tone: Tensor
     region_share: Tensor
 
     def __init__(self, config: AutoencoderConfig | None = None) -> None:
@@ -234,6 +239,7 @@ class SkinAutoencoder(nn.Module):
         self.decoder = SkinDecoder(self.config.optics)
         self.known = KnownCapture(self.decoder.camera, _sample_skin(self.decoder))
         self.register_buffer("sd_scale", torch.ones(2, 2))
+        self.register_buffer("sd_by_tone", torch.zeros(2, 2, 2))
         self.register_buffer("region_share", torch.ones(2))
 
     @classmethod
@@ -328,13 +334,13 @@ class SkinAutoencoder(nn.Module):
         given = self.known.complete(known, photograph.shape[0], linear)
         normal = self.known.normalise(linear, given, self.decoder.camera)
         raw = self.encoder(to_display(normal), normal, self.known.describe(given))
-        maps, global_outputs = map(_at_least_float32, raw)
+        raw_maps, global_outputs = map(_at_least_float32, raw)
         capture = _activate_capture(global_outputs, self.config.white_balance_max)
-        return (
-            _activate(maps, linear),
-            self.known.adopt(given, capture),
-            _activate_uncertainty(maps, global_outputs, self.sd_scale),
-        )
+        maps = _activate(raw_maps, linear)
+        tone = measure_tone(maps.melanin.detach(), maps.mask.detach())
+        factors = find_factors(tone, self.sd_scale, self.sd_by_tone)
+        uncertainty = _activate_uncertainty(raw_maps, global_outputs, factors)
+        return maps, self.known.adopt(given, capture), uncertainty
 
     def decode(self, maps: SkinMaps, capture: Capture) -> Float[Tensor, "batch 3 height width"]:
         """Reconstruct photographs from maps and capture; this half needs float32.

@@ -19,6 +19,7 @@ from export.__main__ import main
 from export.graphs import KNOWN, OUTPUTS, EncoderGraph, describe_outputs, make_example, make_known
 from skinnet.inference import CAPTURE_NAMES, MAP_NAMES, SHIPPED_ENCODER, open_model
 from skinnet.network import AutoencoderConfig, SkinAutoencoder
+from skinnet.network._tone_factors import find_factors
 from skinnet.network._weights import WEIGHTS_FORMAT
 
 pytestmark = pytest.mark.slow
@@ -152,6 +153,11 @@ def test_ranges_of_standard_deviations_are_those_of_the_model() -> None:
     assert described["hemoglobin_sd"]["range"] == pytest.approx([0.02, 3.0])
     assert described["face_sd"]["range"] == pytest.approx([0.005, 4.5])
     assert described["melanin_sd"]["range"] == OUTPUTS["melanin_sd"]["range"]
+    model.sd_by_tone[0, 0] = torch.tensor([0.5, -0.5])  # largest at a tone of .5
+    low, high = describe_outputs(model)["melanin_sd"]["range"]
+    tones = torch.linspace(-1.5, 1.6, 3101)
+    factors = find_factors(tones, model.sd_scale, model.sd_by_tone)[0, 0]
+    assert [low, high] == pytest.approx([0.01 * float(factors.min()), 1.5 * float(factors.max())])
 
 
 def test_outputs_lie_in_their_stated_ranges(exported: Path) -> None:

@@ -7,20 +7,37 @@ import pytest
 import torch
 
 from skinnet.network import AutoencoderConfig, SkinAutoencoder
-from train.calibrate import Evidence, Residuals, _squash, calibrate, collect_evidence, join, main
+from train.calibrate import Evidence, _squash, calibrate, collect_evidence, join, main
+from train.residuals import Residuals
 from train.synthetic.faces import SyntheticFaces
 
 
-def make_residuals(scale: tuple[float, float], count: int = 20_000) -> Residuals:
+def make_residuals(
+    scale: tuple[float, float], by_tone: float = 0.0, count: int = 20_000
+) -> Residuals:
     rng = torch.Generator().manual_seed(0)
     deviation = 0.1 + torch.rand(2, count, generator=rng)
-    error = torch.tensor(scale)[:, None] * deviation * torch.randn(2, count, generator=rng)
-    return Residuals(error, deviation)
+    tone = 3 * torch.rand(count, generator=rng) - 1.5
+    factor = torch.tensor(scale)[:, None] * (by_tone * tone).exp()
+    error = factor * deviation * torch.randn(2, count, generator=rng)
+    return Residuals(error, deviation, tone, tone)
 
 
 def test_the_scale_is_that_of_the_errors() -> None:
-    scale = make_residuals((2.0, 0.5)).find_scale()
-    torch.testing.assert_close(scale, torch.tensor([2.0, 0.5]), rtol=0.03, atol=0)
+    scale, by_tone = make_residuals((2.0, 0.5)).find_scale()
+    torch.testing.assert_close(scale, torch.tensor([2.0, 0.5]), rtol=0.05, atol=0)
+    torch.testing.assert_close(by_tone, torch.zeros(2, 2), rtol=0, atol=0.03)
+
+
+def test_each_tone_has_its_scale() -> None:
+    residuals = make_residuals((2.0, 0.5), by_tone=0.4)
+    scale, by_tone = residuals.find_scale()
+    torch.testing.assert_close(by_tone, torch.tensor([[0.4, 0.0]] * 2), rtol=0, atol=0.06)
+    factor = scale[:, None] * (by_tone @ torch.stack([residuals.tone, residuals.tone**2])).exp()
+    inside = residuals.error.abs() < 1.6449 * factor * residuals.deviation
+    for number in range(6):
+        mine = (residuals.tone + 1.5).div(0.5).floor() == number
+        assert inside[:, mine].float().mean(1).sub(0.9).abs().max() < 0.02
 
 
 def test_the_share_of_a_region_is_what_remains_of_the_pixels_variance(
@@ -32,12 +49,13 @@ def test_the_share_of_a_region_is_what_remains_of_the_pixels_variance(
     region = (face**2 + share * (pixel**2 - face**2)).sqrt()
     error = region * torch.randn(2, count, generator=rng)
     right = make_residuals((1.0, 1.0))
-    found = Evidence(right, right, Residuals(error, pixel), face)
+    tone = torch.zeros(count)
+    found = Evidence(right, right, Residuals(error, pixel, tone, tone), face)
     monkeypatch.setattr("train.calibrate.collect_evidence", lambda *_: found)
     model = SkinAutoencoder(AutoencoderConfig(widths=(4, 6)))
     calibrate(model, [None])  # type: ignore[list-item]
     torch.testing.assert_close(model.region_share, torch.full((2,), share), rtol=0.15, atol=0.02)
-    torch.testing.assert_close(model.sd_scale, torch.ones(2, 2), rtol=0.03, atol=0)
+    torch.testing.assert_close(model.sd_scale, torch.ones(2, 2), rtol=0.05, atol=0)
 
 
 def test_far_out_errors_count_as_four_median_ones() -> None:

@@ -37,8 +37,9 @@ _MIXED_SHARE, _COLOURED_SHARE, _FLASH_SHARE = 0.35, 0.04, 0.15
 WARMING = np.array([0.0035, 0.0, -0.0065])
 """Log R, G and B of linear sRGB per mired that a light is warmer."""
 
-_BLIND_SHARE, _KNOWN_SHARE = 0.45, 0.6
-"""Share of pictures of which nothing is known; and of the others, the share that knows a part."""
+_BLIND_SHARE, _ALL_SHARE, _KNOWN_SHARE = 0.4, 0.15, 0.6
+"""Shares of pictures of which nothing is known, and light, camera and white are; and of the others,
+the share that knows a part."""
 
 
 def sample_processing(
@@ -77,14 +78,14 @@ def make_no_processing() -> ProcessingParameters:
 
 def sample_known(rng: np.random.Generator, linear: bool) -> KnownParameters:
     """Sample what the network is told of a capture, in float64."""
-    white, light, temperature, camera = (rng.random(4) < _KNOWN_SHARE) * (
-        rng.random() > _BLIND_SHARE
-    )
+    others = 1 - _BLIND_SHARE - _ALL_SHARE
+    share = rng.choice([0, 1, _KNOWN_SHARE], p=(_BLIND_SHARE, _ALL_SHARE, others))
+    white, light, temperature, camera = rng.random(4) < share
     return KnownParameters(
         **make_tensors(
             white=float(white),
             light=float(light),
-            temperature=float(light and temperature),
+            temperature=float(temperature),
             camera=float(camera),
             linear=float(linear and rng.random() < 0.7),
             exposure=float(white and rng.random() < _KNOWN_SHARE),

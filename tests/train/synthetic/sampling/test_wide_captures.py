@@ -42,11 +42,12 @@ def test_linear_pictures_have_no_curve_and_no_processing() -> None:
     assert not any(one.known.linear for one in cameras if not one.linear)
 
 
-def test_half_of_the_pictures_are_read_blind() -> None:
+def test_many_pictures_are_read_blind_and_many_with_all_known() -> None:
     _, cameras = sample(600)
     known = torch.stack([torch.stack([*one.known[:4]]) for one in cameras])
     assert 0.35 < (known.sum(1) == 0).float().mean() < 0.6
-    assert (known[:, 2] <= known[:, 1]).all()  # no temperature without its light
+    assert 0.1 < (known.sum(1) == 4).float().mean() < 0.35
+    assert (known[:, 2] > known[:, 1]).any()  # a temperature without its light
     assert (known.mean(0) > 0.15).all()
 
 
