@@ -9,6 +9,7 @@ from .onnx_model import OnnxModel as OnnxModel
 from .onnx_model import OutputInfo as OutputInfo
 from .onnx_model import open_model as open_model
 from .panel import draw_panel as draw_panel
+from .person import Person as Person
 from .results import write_results as write_results
 
 __all__ = [
@@ -21,6 +22,7 @@ __all__ = [
     "Decomposition",
     "OnnxModel",
     "OutputInfo",
+    "Person",
     "draw_panel",
     "open_model",
     "write_results",
