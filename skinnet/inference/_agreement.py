@@ -8,7 +8,7 @@ from scipy.sparse.csgraph import connected_components
 
 from skinnet.errors import InputError
 from skinnet.inference._fusion import SHARED, Fusion, fuse_readings
-from skinnet.inference._shot import Shot
+from skinnet.inference._person_shot import PersonShot
 from skinnet.inference._uncertainty import PIGMENTS
 
 SAME_COLOUR = 0.1
@@ -23,9 +23,6 @@ DOUBTFUL, PLAIN = 0.01, 1e-4
 differ. One of 103 people of the US Congress does so in two portraits by two photographers, and none
 of 104 synthetic faces in five wide captures. Of two such faces whose melanin differs by a factor of
 6, two shots plainly differ in five of six cases; with a factor of 2, in a fifth."""
-
-_LEAST = 3
-"""Least number of shots of which one can be left out: of two, it is not known which is wrong."""
 
 
 def find_sessions(chromaticities: NDArray[np.floating]) -> NDArray[np.intp]:
@@ -43,12 +40,12 @@ def find_sessions(chromaticities: NDArray[np.floating]) -> NDArray[np.intp]:
     return np.asarray(labels, np.intp)
 
 
-def number_sessions(shots: Sequence[Shot]) -> NDArray[np.intp]:
+def number_sessions(shots: Sequence[PersonShot]) -> NDArray[np.intp]:
     """Number the sessions of shots, from 0."""
     return find_sessions(np.stack([shot.chromaticity for shot in shots]))
 
 
-def fuse_shots(shots: Sequence[Shot]) -> tuple[Fusion, Fusion]:
+def fuse_shots(shots: Sequence[PersonShot]) -> tuple[Fusion, Fusion]:
     """Fuse melanin and hemoglobin of the whole skin and of each region, [1 + regions] each."""
     sessions = number_sessions(shots)
     means = np.stack([shot.log_means for shot in shots], -1)
@@ -60,26 +57,26 @@ def fuse_shots(shots: Sequence[Shot]) -> tuple[Fusion, Fusion]:
     return melanin, hemoglobin
 
 
-def find_outlier(shots: Sequence[Shot]) -> int | None:
+def find_outlier(shots: Sequence[PersonShot]) -> int | None:
     """Find the one shot that is plainly unlike all others, which agree.
 
     Returns:
         Its index. None if no shot needs to be left out.
 
     Raises:
-        InputError: Shots plainly differ, and it is not a single one that does.
+        InputError: Shots plainly differ, and it is not known which of them are wrong: not a single
+            one, or one against one, or one against shots of a single other session.
     """
     if _find_p(shots) >= PLAIN:
         return None
-    if len(shots) >= _LEAST:
-        rest = [_find_p([*shots[:one], *shots[one + 1 :]]) for one in range(len(shots))]
-        agreeing = [one for one, p in enumerate(rest) if p >= DOUBTFUL]
-        if len(agreeing) == 1:
-            return agreeing[0]
+    rest = [_find_p([*shots[:one], *shots[one + 1 :]]) for one in range(len(shots))]
+    agreeing = [one for one, p in enumerate(rest) if p >= DOUBTFUL]
+    if len(agreeing) == 1 and _is_outvoted(number_sessions(shots), agreeing[0]):
+        return agreeing[0]
     raise InputError(_describe_conflict(shots))
 
 
-def describe_outlier(shots: Sequence[Shot], index: int) -> str:
+def describe_outlier(shots: Sequence[PersonShot], index: int) -> str:
     """Say which shot is left out, and why."""
     at = _find_worst(shots)
     others = [*shots[:index], *shots[index + 1 :]]
@@ -101,11 +98,11 @@ def note_disagreement(melanin: Fusion, hemoglobin: Fusion) -> list[str]:
     ]
 
 
-def note_sessions(shots: Sequence[Shot]) -> list[str]:
+def note_sessions(shots: Sequence[PersonShot]) -> list[str]:
     """Note shots that count as one."""
     sessions = number_sessions(shots)
     groups = [
-        [shots[at].name for at in np.flatnonzero(sessions == one)]
+        [shot.name for shot, session in zip(shots, sessions, strict=True) if session == one]
         for one in range(sessions.max() + 1)
     ]
     return [
@@ -124,19 +121,25 @@ def describe_test(fusion: Fusion) -> str:
     return f"Q {fusion.q[0]:.3g} with {degrees}, p {fusion.p[0]:.1g}"
 
 
-def _find_p(shots: Sequence[Shot]) -> float:
+def _find_p(shots: Sequence[PersonShot]) -> float:
     """Probability that shots of one skin differ as much in either pigment (Bonferroni)."""
     fused = fuse_shots(shots)
     return min(1.0, len(PIGMENTS) * min(float(one.p[0]) for one in fused))
 
 
-def _find_worst(shots: Sequence[Shot]) -> int:
+def _is_outvoted(sessions: NDArray[np.intp], index: int) -> bool:
+    """Whether shots of another session, or of its own, speak against a shot, and not one alone."""
+    others = np.delete(sessions, index)
+    return bool(sessions[index] in others) or len(set(others.tolist())) > 1
+
+
+def _find_worst(shots: Sequence[PersonShot]) -> int:
     """Index of the pigment in which shots of one skin are least likely to differ as much."""
     fused = fuse_shots(shots)
     return int(np.argmin([float(one.p[0]) for one in fused]))
 
 
-def _describe_conflict(shots: Sequence[Shot]) -> str:
+def _describe_conflict(shots: Sequence[PersonShot]) -> str:
     at = _find_worst(shots)
     fused = fuse_shots(shots)[at]
     ordered = sorted(shots, key=lambda shot: float(shot.log_means[0, at]))

@@ -4,7 +4,6 @@ from collections.abc import Sequence
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 from PIL import Image, ImageDraw
 
 from skinnet.inference._colour_scales import PIGMENTS
@@ -74,5 +73,5 @@ def _draw_row(pen: ImageDraw.ImageDraw, name: str, row: PlotRow, y: int) -> None
 
 def _place(name: str, fractions: Sequence[float]) -> list[float]:
     """Pixels of fractions from the left."""
-    places: NDArray[np.floating] = PIGMENTS[name].place(np.array(fractions))
-    return (places.clip(0, 1) * (TILE - 1)).tolist()
+    places = PIGMENTS[name].place(np.array(fractions)).clip(0, 1)
+    return [float(place) * (TILE - 1) for place in places]

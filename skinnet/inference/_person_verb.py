@@ -22,6 +22,7 @@ from skinnet.inference._face_choice import check_choice, note_others
 from skinnet.inference._messages import note, print_line, report
 from skinnet.inference._own_results import Source
 from skinnet.inference._person_panel import draw_person
+from skinnet.inference._person_shot import PersonShot, describe_shot
 from skinnet.inference._photo_verbs import (
     _FACELESS,
     _READ,
@@ -30,7 +31,6 @@ from skinnet.inference._photo_verbs import (
     _make_decomposer,
     _read,
 )
-from skinnet.inference._shot import Shot, describe_shot
 from skinnet.inference._tiles import TILE
 from skinnet.inference.decomposer import Decomposer
 from skinnet.inference.person import Person
@@ -43,7 +43,7 @@ class _Read(NamedTuple):
     """A shot, its file, and a small picture of what was read of it, uint8 sRGB [h, w, 3]."""
 
     source: Source
-    shot: Shot
+    shot: PersonShot
     picture: NDArray[np.uint8]
 
 

@@ -19,7 +19,7 @@ from skinnet.inference._agreement import (
 )
 from skinnet.inference._fused_pigment import FusedPigment, FusedRegion, make_pigment
 from skinnet.inference._fusion import SHARED, Fusion
-from skinnet.inference._shot import Shot, describe_shot
+from skinnet.inference._person_shot import PersonShot, describe_shot
 from skinnet.inference._uncertainty import (
     LEVEL,
     PIGMENTS,
@@ -69,7 +69,7 @@ class Person:
     shots: tuple[str, ...]
     sessions: tuple[int | None, ...]
     notes: tuple[str, ...]
-    _read: tuple[Shot, ...]
+    _read: tuple[PersonShot, ...]
 
     @classmethod
     def from_shots(
@@ -112,7 +112,7 @@ class Person:
         return cls._fuse(read)
 
     @classmethod
-    def _fuse(cls, read: Sequence[Shot]) -> "Person":
+    def _fuse(cls, read: Sequence[PersonShot]) -> "Person":
         """Fuse shots of which the maps are gone."""
         used, notes = _choose_shots(read)
         usable = [read[index] for index in used]
@@ -178,9 +178,9 @@ class Person:
 
         Returns:
             `shots` (of each `name`, `session`, None if it was left out, `pigments` with `mean`,
-            `sd` and `interval` as the shot alone states them, and `notes` on it), `pigments` and
-            `regions` (of each `melanin` and `hemoglobin` with `mean`, `sd`, `interval`, its
-            probability `level`, the number of `shots`, and their `agreement`),
+            `sd` and `interval` as the shot alone states them, `capture_known` and `notes`),
+            `pigments` and `regions` (of each `melanin` and `hemoglobin` with `mean`, `sd`,
+            `interval`, its probability `level`, the number of `shots`, and their `agreement`),
             `shared_correlation` of the errors of two sessions, `notes`, `version` and `model`.
         """
         return {
@@ -201,7 +201,7 @@ class Person:
         return 0.0 if mean is None or sd is None else sd / mean
 
 
-def _choose_shots(read: Sequence[Shot]) -> tuple[list[int], list[str]]:
+def _choose_shots(read: Sequence[PersonShot]) -> tuple[list[int], list[str]]:
     """Leave out shots without skin, and one that is plainly unlike the others. Returns notes."""
     notes = [f"{shot.name} was left out: no skin was found." for shot in read if not shot.has_skin]
     used = [index for index, shot in enumerate(read) if shot.has_skin]
@@ -214,7 +214,7 @@ def _choose_shots(read: Sequence[Shot]) -> tuple[list[int], list[str]]:
     return used, notes
 
 
-def _refuse_few(usable: Sequence[Shot]) -> None:
+def _refuse_few(usable: Sequence[PersonShot]) -> None:
     """Refuse less than two shots, and shots that cannot be compared."""
     if len(usable) < 2:
         raise InputError(
@@ -236,11 +236,15 @@ def _make_region(fused: tuple[Fusion, Fusion], row: int, tops: tuple[float, floa
     return FusedRegion(melanin, hemoglobin)
 
 
-def _summarise(shot: Shot) -> dict[str, Any]:
+def _summarise(shot: PersonShot) -> dict[str, Any]:
     """What one shot states alone."""
     rows = zip(PIGMENTS, shot.log_means[0], shot.log_sds[0], shot.tops, strict=True)
     pigments = {
         name: summarise_mean(float(np.exp(value)) if shot.has_skin else None, float(log_sd), top)
         for name, value, log_sd, top in rows
     }
-    return {"pigments": _round_all(pigments), "notes": list(shot.notes)}
+    return {
+        "pigments": _round_all(pigments),
+        "capture_known": list(shot.capture_known),
+        "notes": list(shot.notes),
+    }

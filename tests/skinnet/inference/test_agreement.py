@@ -12,14 +12,14 @@ from skinnet.inference._agreement import (
     note_disagreement,
     note_sessions,
 )
-from skinnet.inference._shot import Shot
+from skinnet.inference._person_shot import PersonShot
 
 
 def make_shot(
     melanin: float, hemoglobin: float = 0.06, sd: float = 0.15, red: float = 0.0, name: str = ""
-) -> Shot:
+) -> PersonShot:
     """A shot of which only the whole skin is known; `red` is its log R/G."""
-    return Shot(
+    return PersonShot(
         name or f"{melanin:g}.jpg",
         np.log([[melanin, hemoglobin]]),
         np.full((1, 2), sd),
@@ -30,7 +30,7 @@ def make_shot(
     )
 
 
-def make_shots(*melanin: float) -> list[Shot]:
+def make_shots(*melanin: float) -> list[PersonShot]:
     """Shots in light of other colours."""
     return [make_shot(each, red=0.2 * number) for number, each in enumerate(melanin)]
 
@@ -88,6 +88,13 @@ def test_shots_that_differ_more_than_they_state_are_noted_and_widen() -> None:
     assert melanin.birge_ratio[0] > 1.5
     assert said.startswith("The shots differ in melanin more than they state (Q ")
     assert f"{melanin.birge_ratio[0]:.2g} times as wide" in said
+
+
+def test_a_session_against_one_other_shot_is_refused_and_a_failure_within_it_is_left_out() -> None:
+    session = [make_shot(0.05), make_shot(0.051), make_shot(0.052)]
+    with pytest.raises(InputError, match="plainly not of one skin"):
+        find_outlier([*session, make_shot(0.25, red=0.5)])
+    assert find_outlier([*session, make_shot(0.25)]) == 3
 
 
 def test_unsure_shots_are_not_unlike_others() -> None:

@@ -16,7 +16,7 @@ _MOST_PIXELS = 1 << 18
 """Of larger photographs, every second pixel is looked at, or every third, and so on."""
 
 
-class Shot(NamedTuple):
+class PersonShot(NamedTuple):
     """One shot of a person: a few numbers, since the maps of many shots need much memory.
 
     Attributes:
@@ -28,6 +28,7 @@ class Shot(NamedTuple):
         tops: Largest fractions of melanin and hemoglobin.
         has_face: Whether a face was looked for, so that there are regions.
         model: The model that has read it.
+        capture_known: Names of what was given of its capture.
         notes: Sentences on it that the user should read.
     """
 
@@ -38,6 +39,7 @@ class Shot(NamedTuple):
     tops: tuple[float, float]
     has_face: bool
     model: dict[str, str]
+    capture_known: tuple[str, ...] = ()
     notes: tuple[str, ...] = ()
 
     @property
@@ -46,7 +48,7 @@ class Shot(NamedTuple):
         return bool(np.isfinite(self.log_means[0]).all())
 
 
-def describe_shot(decomposition: Decomposition, name: str) -> Shot:
+def describe_shot(decomposition: Decomposition, name: str) -> PersonShot:
     """Keep of a decomposition what is fused."""
     face = [(decomposition.means.get(each), None) for each in PIGMENTS]
     regions = decomposition.regions
@@ -62,7 +64,7 @@ def describe_shot(decomposition: Decomposition, name: str) -> Shot:
     log_sds = sds / means
     log_sds[0] = decomposition.uncertainty.face
     melanin, hemoglobin = (decomposition.output_info[each].range[1] for each in PIGMENTS)
-    return Shot(
+    return PersonShot(
         name,
         np.where(np.isfinite(log_means), log_means, np.nan),
         log_sds,
@@ -70,6 +72,7 @@ def describe_shot(decomposition: Decomposition, name: str) -> Shot:
         (melanin, hemoglobin),
         bool(regions),
         decomposition.model,
+        decomposition.capture_known,
         decomposition.notes,
     )
 
