@@ -26,24 +26,48 @@ def measure_people(
     truths, described = [], []
     for shots in render_people(settings):
         truths.append(shots[0].truth)
-        described.append(describe_shots(shots[:2]))
+        described.append(describe_shots(shots))
         for name, reader in readers.items():
             readings[name].append(read_shots(shots, reader))
-    truth = np.stack(truths)
+    truth, colours = np.stack(truths), np.stack(described)
     scores = {
-        name: _score(stack_readings(readings[name]), truth, reader)
+        name: _score(stack_readings(readings[name]), colours, truth, reader)
         for name, reader in readers.items()
     }
-    return scores, measure_spreads(np.stack(described))
+    return scores, measure_spreads(colours[:, :2])
 
 
-def _score(reading: SkinReading, truth: NDArray[np.floating], reader: NetworkReader) -> Results:
+def _score(
+    reading: SkinReading,
+    colours: NDArray[np.floating],
+    truth: NDArray[np.floating],
+    reader: NetworkReader,
+) -> Results:
     first = SkinReading(reading.pigments[:, :2], reading.sd[:, :2], {})
     return {
         "pairs": score_reading(first, reader.model.decoder),
         "single": correlate(reading.pigments[:, 0], truth),
-        f"fused{reading.sd.shape[1]}": correlate(fuse(reading), truth),
+        f"fused{reading.sd.shape[1]}": score_fused(reading, colours[..., :2], truth),
     }
+
+
+def score_fused(
+    reading: SkinReading, colours: NDArray[np.floating], truth: NDArray[np.floating]
+) -> Results:
+    """Score people that are fused as `skinnet person` does, and how far their shots err alike.
+
+    Args:
+        reading: Readings [people, shots, 2].
+        colours: Log R/G and log B/G of the skin in the photographs, [people, shots, 2].
+        truth: Natural logarithms of the true fractions, [people, 2].
+    """
+    people = fuse_people(reading, colours)
+    found = correlate(np.stack([fused.value for fused in people], -1), truth)
+    for index, (name, fused) in enumerate(zip(PIGMENTS, people, strict=True)):
+        shots = reading.pigments[..., index], reading.sd[..., index]
+        found[name]["coverage"] = measure_coverage(fused, truth[:, index])
+        found[name]["error_correlation"] = correlate_errors(*shots, truth[:, index])
+    return found
 
 
 def measure_changes(

@@ -21,8 +21,8 @@ shots under others, in a tenth (104 synthetic faces in captures as wide as photo
 DOUBTFUL, PLAIN = 0.01, 1e-4
 """Probabilities of Q below which shots differ more than they state, and below which they plainly
 differ. One of 103 people of the US Congress does so in two portraits by two photographers, and none
-of 104 synthetic faces in five wide captures. Of two such faces whose melanin differs by a factor of
-6, two shots plainly differ in five of six cases; with a factor of 2, in a fifth."""
+of 104 synthetic faces in five wide captures. One wide shot each of two such faces plainly differ in
+five of six cases if melanin differs by a factor of 6 or more, and in a fifth if by 2 to 3."""
 
 
 def find_sessions(chromaticities: NDArray[np.floating]) -> NDArray[np.intp]:

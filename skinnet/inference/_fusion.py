@@ -19,7 +19,7 @@ SHARED = {"melanin": 0.45, "hemoglobin": 0.65}
 """Correlation of the errors of two shots of one person under different light and cameras.
 
 Measured on 104 synthetic faces, five captures each, as wide as photographs by anybody:
-`correlate_errors` of `benchmarks.synthetic_constancy`.
+`synthetic.fused5.*.error_correlation` of `python -m benchmarks.constancy`.
 """
 
 

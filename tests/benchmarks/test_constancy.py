@@ -23,6 +23,7 @@ from benchmarks.synthetic_constancy import (
     fuse,
     fuse_people,
     measure_coverage,
+    score_fused,
 )
 from benchmarks.white_balances import balance_to_grey
 from skinnet.images import resize, srgb_to_linear
@@ -88,6 +89,8 @@ def test_people_are_fused_with_intervals_that_cover() -> None:
         assert 0.89 < measure_coverage(fused, truth[:, index]) < 0.95
         found = correlate_errors(reading.pigments[..., index], sd[..., index], truth[:, index])
         assert found == pytest.approx(correlation, abs=0.03)
+    scores = score_fused(reading, colours, truth)
+    assert scores["melanin"]["r_log"] > 0.9 and 0.89 < scores["melanin"]["coverage"] < 0.95
     together = fuse_people(reading, np.zeros((4000, 5, 2)))
     assert (together[0].sd >= 0.2 - 1e-9).all()
 
@@ -193,3 +196,4 @@ def test_the_results_have_the_agreed_keys(tmp_path: Path) -> None:
     assert set(found["guards"]) == {"grey", "slope", "slope_by_fourth", "slope_synthetic"}
     assert set(found["captures"]) == {"pairs", "wide"}
     assert set(found["synthetic"]) == {"pairs", "single", "fused2"}
+    assert {"coverage", "error_correlation"} < set(found["synthetic"]["fused2"]["melanin"])
