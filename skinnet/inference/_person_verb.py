@@ -82,6 +82,8 @@ def _read_shots(
         try:
             one = _read_one(decomposer, picture, options)
             counts[_READ] += 1
+        except BrokenPipeError:
+            raise
         except (InputError, OSError) as error:
             counts[_FACELESS if isinstance(error, NoFaceError) else _READ_NOT] += 1
             report(error)
