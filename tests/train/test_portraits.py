@@ -113,8 +113,8 @@ def test_files_of_other_kinds_are_passed_over_and_listed(
     assert reasons == {
         "a_edited.jpg": "It is a result of skinnet; give the photograph itself.",
         "a_reconstruction.png": "It is a result of skinnet; give the photograph itself.",
-        "raw.nef": 'It is a RAW file; pip install "skinnet[raw]" reads it; or develop it, and save it as '
-        "16-bit TIFF or JPEG.",
+        "raw.nef": 'It is a RAW file; pip install "skinnet[raw]" reads it; or develop it, and save '
+        "it as 16-bit TIFF or JPEG.",
         "\\udcff.txt": "It is another file; give a JPEG, PNG, TIFF or WebP file.",
     }
     count = capsys.readouterr().err.splitlines()[-1]
