@@ -28,6 +28,7 @@ from skinnet.inference._capture_names import name_camera, name_light
 from skinnet.inference._doubts import list_doubts
 from skinnet.inference._editing import ColourChange, apply_change, compute_change
 from skinnet.inference._face_choice import FaceChoice
+from skinnet.inference._metering import brighten, find_gain, scale_back, shift_exposure
 from skinnet.inference._onnx_pair import get_decoder_path, refuse_other_export
 from skinnet.inference._skin_mask import adopt_mask, find_skin
 from skinnet.inference._subject import Region, Subject, find_subjects
@@ -352,6 +353,11 @@ class Decomposer:
         size = self.encoder.working_size
         cut = subject.crop.cut(photo, size)
         encoder_outputs = self.encoder.run({"image": cut[None], **known})
+        gain = find_gain(cut, encoder_outputs["mask"][0], known)
+        if gain != 1:
+            cut = subject.crop.cut(brighten(photo, gain), size)
+            inputs = {"image": cut[None], **shift_exposure(known, gain)}
+            encoder_outputs = scale_back(self.encoder.run(inputs), gain)
         outputs = subject.crop.turn_back(encoder_outputs, size)
         return outputs | {"mask": subject.keep_own_skin(outputs["mask"][0])[None]}
 

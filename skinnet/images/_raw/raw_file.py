@@ -17,6 +17,7 @@ from skinnet.images._raw.colours import (
 )
 from skinnet.images._raw.exif_block import read_raw_exif
 from skinnet.images._shot import read_shot
+from skinnet.images._tiff_structure import find_sensor_end
 from skinnet.images.colour_space import ColourSpace
 from skinnet.images.picture import Picture
 from skinnet.images.srgb import linear_to_srgb
@@ -26,6 +27,10 @@ FORMAT = "RAW"
 
 _REMEDY = "convert it to DNG, or develop it and save it as 16-bit TIFF or JPEG"
 _TOP = 65535
+_MOST_PIXELS = 16
+"""Pixels that no format holds in a byte."""
+
+_TIFF = (b"II*\0", b"MM\0*")
 _STRIP = 256
 """Rows whose colours are computed at once; bounds the memory."""
 
@@ -55,6 +60,7 @@ def read_raw(data: bytes, name: str, largest: int, upright: bool = True) -> Pict
             raw.open_buffer(BytesIO(data))
             _check(raw, name, largest)
             raw.unpack()
+            _check_values(rawpy, raw, data)
             return _develop(rawpy, raw, data, name, upright)
     except InputError:
         raise
@@ -93,6 +99,23 @@ def _check(raw: Any, name: str, largest: int) -> None:
             f"{name} is a RAW file of a sensor of {count} colours, where 3 are needed; develop it, "
             "and save it as 16-bit TIFF or JPEG."
         )
+
+
+def _check_values(rawpy: Any, raw: Any, data: bytes) -> None:
+    """Find files that are cut, which LibRaw fills with black or noise in some formats.
+
+    Raises:
+        ValueError: The file is cut.
+    """
+    pixels = raw.sizes.raw_width * raw.sizes.raw_height
+    is_tiff = data.startswith(_TIFF)
+    if len(data) * _MOST_PIXELS < pixels or (
+        is_tiff and find_sensor_end(BytesIO(data)) > len(data)
+    ):
+        raise ValueError("the sensor's values are missing in part")
+    if raw.raw_type == rawpy.RawType.Flat:
+        if raw.raw_image_visible.max() <= min(raw.black_level_per_channel):
+            raise ValueError("the sensor's values are all black")
 
 
 def _develop(rawpy: Any, raw: Any, data: bytes, name: str, upright: bool) -> Picture:

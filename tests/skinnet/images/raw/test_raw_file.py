@@ -13,6 +13,7 @@ from raw_files import EXIF_NAMES, light, photograph_spectra, read_patches
 
 from skinnet.errors import InputError
 from skinnet.images import _decode, linear_to_srgb, read_picture
+from skinnet.images._raw import raw_file
 from skinnet.images._raw.raw_file import _check
 from skinnet.images._shot import read_shot
 from tools.dng import Sensor, write_dng
@@ -154,6 +155,27 @@ def test_a_file_that_is_cut_is_damaged(length: int) -> None:
     content = write_dng(GREY, Sensor(matrix=MATRIX))
     with pytest.raises(InputError, match=r"a\.dng is a RAW file that is damaged or cut short \("):
         read(content[:length])
+
+
+def test_a_file_without_light_is_damaged() -> None:
+    with pytest.raises(InputError, match=r"a\.dng is a RAW file that is damaged .*all black\)"):
+        read(write_dng(np.zeros((64, 96, 3)), Sensor(matrix=MATRIX)))
+
+
+def test_a_file_that_states_more_than_it_holds_is_cut() -> None:
+    content = write_dng(GREY, Sensor(matrix=MATRIX))
+    with tifffile.TiffFile(io.BytesIO(content)) as file:
+        tag = file.pages[0].tags[279]
+    longer = bytearray(content)
+    longer[tag.valueoffset : tag.valueoffset + 2] = (2 * 64 * 96 + 9).to_bytes(2, "little")
+    with pytest.raises(InputError, match=r"a\.dng is a RAW file that is damaged .*in part\)"):
+        read(bytes(longer))
+
+
+def test_a_file_that_is_far_too_small_is_cut(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(raw_file, "_MOST_PIXELS", 0.1)
+    with pytest.raises(InputError, match=r"a\.dng is a RAW file that is damaged .*in part\)"):
+        read(write_dng(GREY, Sensor(matrix=MATRIX)))
 
 
 def test_what_libraw_does_not_read_is_named() -> None:
