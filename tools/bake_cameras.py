@@ -112,19 +112,24 @@ def make_matrix(curves: Float[np.ndarray, "wavelength 3"]) -> Matrix:
 
 def average_stated() -> Matrix:
     """Average the colour matrices that LibRaw knows of the measured cameras."""
+    mean: Matrix = np.mean(list(read_stated().values()), 0)
+    return mean
+
+
+def read_stated() -> dict[str, Matrix]:
+    """Read the colour matrices that LibRaw knows of the measured cameras, by name."""
     import rawpy
 
     from skinnet.images._raw.colours import read_stated_matrix
 
-    found = []
+    found = {}
     for name in load_cameras():
         file = write_dng(np.zeros((64, 64, 3)), _describe(name))
         with rawpy.imread(BytesIO(file)) as raw:
             stated = read_stated_matrix(raw)
         if stated is not None:
-            found.append(stated.matrix)
-    mean: Matrix = np.mean(found, 0)
-    return mean
+            found[name] = stated.matrix
+    return found
 
 
 def _describe(name: str) -> Sensor:
