@@ -356,7 +356,7 @@ class Decomposer:
         gain = find_gain(cut, encoder_outputs["mask"][0], known)
         if gain != 1:
             cut = subject.crop.cut(brighten(photo, gain), size)
-            inputs = {"image": cut[None], **shift_exposure(known, gain)}
+            inputs: dict[str, Any] = {"image": cut[None], **shift_exposure(known, gain)}
             encoder_outputs = scale_back(self.encoder.run(inputs), gain)
         outputs = subject.crop.turn_back(encoder_outputs, size)
         return outputs | {"mask": subject.keep_own_skin(outputs["mask"][0])[None]}
