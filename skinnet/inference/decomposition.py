@@ -1,7 +1,7 @@
 """The result for one photograph: maps, light, camera, and their summary."""
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from functools import cached_property
 from typing import Any
 
@@ -79,7 +79,10 @@ class Decomposition:
         tilt: Angle in degrees by which the head is turned clockwise; None if no face was looked
             for.
         pixels_read: Number of pixels in the box that were read; None for all of them.
-        capture_known: Names of the parts of the capture that were given, such as "white_balance".
+        capture_known: Names of the parts of the capture that were given, such as "white_balance",
+            or that a RAW file tells.
+        exif: What EXIF states of the shot: `camera`, `flash` (whether it fired), `white_balance`
+            (auto or manual) and `light_source`; None is what it does not state.
 
     Example:
         >>> from skimage.data import astronaut
@@ -109,6 +112,7 @@ class Decomposition:
     tilt: float | None = None
     pixels_read: int | None = None
     capture_known: tuple[str, ...] = ()
+    exif: Mapping[str, Any] = field(default_factory=dict)
 
     def __repr__(self) -> str:
         height, width = self.mask.shape
@@ -300,7 +304,8 @@ class Decomposition:
             `regions` (of each `melanin` and `hemoglobin` with `mean`, `std`, `median`, `sd` and
             `interval`, which are None where it is hidden, `share` and `pixels`), `landmarks` (a
             list of [x, y] to a tenth of a pixel; None without a face), `light`, `camera`,
-            `capture_known` (what was given of them), `version` and `model`.
+            `capture_known` (what was given of them, or a RAW file tells), `exif` (what EXIF states
+            of the shot), `version` and `model`.
         """
         skin = self.mask > SKIN_THRESHOLD
         height, width = skin.shape
@@ -327,6 +332,7 @@ class Decomposition:
             "light": _round_all(self.light),
             "camera": _round_all(self.camera),
             "capture_known": list(self.capture_known),
+            "exif": dict(self.exif),
             "version": __version__,
             "model": self.model,
         }
