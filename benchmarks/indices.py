@@ -7,10 +7,10 @@ the spectrum are colour-science's.
 
 For each of `nist`, `issa` and `all`, and each index, it prints the median and the 90th percentile
 of the absolute error, the mean error (`bias`), and the share of spectra whose own index lies in the
-90 % interval that the fractions give if they are known exactly (`coverage`). `held_out` has the same
-where the distribution of skins is fitted to the other half of the spectra. `monk_tone` has the share
-of spectra with the same nearest tone, with one that is at most one tone off, and how many spectra
-have which tone.
+90 % interval that the fractions give if they are known exactly (`coverage`). `held_out` has the
+same where the distribution of skins is fitted to the other half of the spectra. `monk_tone` has the
+share of spectra with the same nearest tone, with one that is at most one tone off, and how many
+spectra have which tone.
 """
 
 from collections.abc import Callable

@@ -128,7 +128,8 @@ def _sample_normal(
     covariance: Float[Tensor, "skin size size"], rng: torch.Generator
 ) -> Float[Tensor, "skin sample size"]:
     half = torch.randn(SAMPLES // 2, covariance.shape[-1], generator=rng, dtype=covariance.dtype)
-    return torch.cat([half, -half]) @ torch.linalg.cholesky(covariance).mT
+    root: Tensor = torch.linalg.cholesky(covariance)
+    return torch.cat([half, -half]) @ root.mT
 
 
 if __name__ == "__main__":

@@ -36,7 +36,8 @@ COLUMNS = (
 """Columns of the table, in this order.
 
 A number and its 90 % interval are NAME, NAME_low and NAME_high; those of a part of the face begin
-with its name, and REGION_share is the part of it that is skin. Cells of what is not known are empty.
+with its name, and REGION_share is the part of it that is skin. Cells of what is not known are
+empty.
 """
 
 

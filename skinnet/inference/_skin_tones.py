@@ -30,8 +30,8 @@ def load_monk_tones() -> NDArray[np.float64]:
 
 def compare_with_monk(lab: NDArray[np.float64]) -> NDArray[np.float64]:
     """Compute CIEDE2000 between colours, L*a*b* [n, 3], and each tone: [n, 10]."""
-    # It takes as long to import as NumPy, and only summaries need it.
+    # Slow to import, and only summaries need it.
     from skimage.color import deltaE_ciede2000
 
-    difference: NDArray[np.float64] = deltaE_ciede2000(lab[:, None], load_monk_tones()[None])
-    return difference
+    differences = deltaE_ciede2000(lab[:, None], load_monk_tones()[None])  # type: ignore[no-untyped-call]
+    return np.asarray(differences)

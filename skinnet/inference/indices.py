@@ -36,8 +36,8 @@ def compute_indices(
 
     An interval has two parts, which are added as independent. The first is the range of the index
     over all pairs of fractions in the intervals of both pigments. How the errors of both pigments
-    are correlated is not known; this is the widest range that any correlation gives, and it needs no
-    linear model. The second is how far people with the same pigments differ: in thickness,
+    are correlated is not known; this is the widest range that any correlation gives, and it needs
+    no linear model. The second is how far people with the same pigments differ: in thickness,
     scattering and oxygenation of the skin, and in what the model leaves over.
 
     Args:
@@ -68,13 +68,13 @@ def compute_indices(
     wide = _spread(melanin, hemoglobin, log_sds, level)
     one_sd = _spread(melanin, hemoglobin, log_sds, math.erf(math.sqrt(0.5)))
     sds = (one_sd.below + one_sd.above) / 2
-    low, high = wide.values - wide.below, wide.values + wide.above
-    indices = [
-        Index(*map(float, (value, sd)), (float(a), float(b)))
-        for value, sd, a, b in zip(wide.values, sds, low, high, strict=True)
-    ]
-    group = find_typology_group(indices[INDICES.index("typology_angle")].value)
-    return SkinIndices(*indices, group, _find_monk_tone(wide))
+    rows = np.stack([wide.values, sds, wide.values - wide.below, wide.values + wide.above], -1)
+    indices = {
+        name: Index(value, sd, (low, high))
+        for name, (value, sd, low, high) in zip(INDICES, rows.tolist(), strict=True)
+    }
+    group = find_typology_group(indices["typology_angle"].value)
+    return SkinIndices(**indices, typology_group=group, monk_tone=_find_monk_tone(wide))
 
 
 def _find_indices(

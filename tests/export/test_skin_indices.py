@@ -66,9 +66,7 @@ def test_spreads_are_those_of_samples_of_the_prior() -> None:
     np.testing.assert_allclose(sampled.std(1), sd, rtol=0.25)
 
 
-def test_the_table_is_written_to_a_file(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_the_table_is_written_to_a_file(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr("export.skin_indices.tabulate", lambda: np.arange(13.0)[None])
     main(["-o", str(tmp_path / "table.csv")])
     first, columns, row = (tmp_path / "table.csv").read_text().splitlines()

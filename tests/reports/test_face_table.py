@@ -24,7 +24,11 @@ def test_faces_and_failures_are_rows(run, tmp_path: Path) -> None:
     code, _, said = run("predict", tmp_path / "in", "--csv", table, "--faces", "all")
     assert code == 2
     rows = {(Path(row["file"]).name, row["face"]): row for row in read(table)}
-    assert list(rows) == [*(("a.png", str(face)) for face in (1, 2, 3)), ("b.png", ""), ("c.png", "")]
+    assert list(rows) == [
+        *(("a.png", str(face)) for face in (1, 2, 3)),
+        ("b.png", ""),
+        ("c.png", ""),
+    ]
     assert all(row["melanin"] == "0.2" for (name, _), row in rows.items() if name == "a.png")
     for name in ("b.png", "c.png"):
         reason = rows[name, ""]["reason"]
