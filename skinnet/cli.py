@@ -97,6 +97,12 @@ def _add_predict(verbs: "argparse._SubParsersAction[argparse.ArgumentParser]") -
         "--json", action="store_true", help="print each summary as one line of JSON, nothing else"
     )
     verb.add_argument(
+        "--csv",
+        type=Path,
+        metavar="FILE",
+        help="append one row for each face, and one with the reason for each file that is not read",
+    )
+    verb.add_argument(
         "--no-detail",
         dest="detail",
         action="store_false",
