@@ -5,6 +5,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from skinnet.inference._fusion import Fusion
+from skinnet.inference._index_summary import SkinIndices
 from skinnet.inference._uncertainty import LEVEL, find_interval
 
 
@@ -41,6 +42,11 @@ class FusedPigment(NamedTuple):
     shots: int = 0
     agreement: Agreement | None = None
 
+    @property
+    def log_sd(self) -> float:
+        """Standard deviation of the natural logarithm; 0 where there is no mean."""
+        return 0.0 if self.mean is None or self.sd is None else self.sd / self.mean
+
     def to_json(self) -> dict[str, Any]:
         """The same as numbers for JSON."""
         agreement = None if self.agreement is None else self.agreement._asdict()
@@ -48,14 +54,23 @@ class FusedPigment(NamedTuple):
 
 
 class FusedRegion(NamedTuple):
-    """The pigments in a region of the face."""
+    """The pigments in a region of the face.
+
+    Attributes:
+        melanin: Melanin, fused from the shots that show the region.
+        hemoglobin: Hemoglobin, as of melanin.
+        indices: Colour, typology angle and the like of skin with the mean pigments, with 90 %
+            intervals; None if there are none, or the fractions are not of the preset `measured`.
+    """
 
     melanin: FusedPigment
     hemoglobin: FusedPigment
+    indices: SkinIndices | None = None
 
     def to_json(self) -> dict[str, Any]:
         """The same as numbers for JSON."""
-        return {"melanin": self.melanin.to_json(), "hemoglobin": self.hemoglobin.to_json()}
+        pigments = {"melanin": self.melanin.to_json(), "hemoglobin": self.hemoglobin.to_json()}
+        return {**pigments, "indices": None if self.indices is None else self.indices.to_json()}
 
 
 def make_pigment(fusion: Fusion, index: int, top: float) -> FusedPigment:

@@ -27,11 +27,14 @@ from skinnet.inference._photo_verbs import (
     _FACELESS,
     _READ,
     _READ_NOT,
+    _complete_capture,
     _describe_run,
+    _make_capture,
     _make_decomposer,
     _read,
 )
 from skinnet.inference._tiles import TILE
+from skinnet.inference.capture import Capture
 from skinnet.inference.decomposer import Decomposer
 from skinnet.inference.person import Person
 from skinnet.inference.results import _describe_fault, _make_folder
@@ -52,8 +55,9 @@ def person(options: argparse.Namespace) -> bool:
     _check_faces(options.faces)
     decomposer = _make_decomposer(options)
     decomposer.load()
+    capture = _make_capture(options, decomposer)
     found = walk(options.input, options.recursive)
-    read, counts = _read_shots(decomposer, found.pictures, options)
+    read, counts = _read_shots(decomposer, found.pictures, options, capture)
     for sentence in (*found.notes, *(each for one in read for each in one.shot.notes)):
         note(sentence)
     note(_describe_run(counts, found))
@@ -73,14 +77,17 @@ def _check_faces(faces: object) -> None:
 
 
 def _read_shots(
-    decomposer: Decomposer, pictures: Sequence[Found], options: argparse.Namespace
+    decomposer: Decomposer,
+    pictures: Sequence[Found],
+    options: argparse.Namespace,
+    capture: Capture,
 ) -> tuple[list[_Read], Counter[str]]:
     """Read every shot; report bad ones and continue."""
     read: dict[str, _Read] = {}
     counts: Counter[str] = Counter()
     for picture in pictures:
         try:
-            one = _read_one(decomposer, picture, options)
+            one = _read_one(decomposer, picture, options, capture)
             counts[_READ] += 1
         except BrokenPipeError:
             raise
@@ -94,13 +101,22 @@ def _read_shots(
     return list(read.values()), counts
 
 
-def _read_one(decomposer: Decomposer, found: Found, options: argparse.Namespace) -> _Read:
+def _read_one(
+    decomposer: Decomposer, found: Found, options: argparse.Namespace, capture: Capture
+) -> _Read:
     if found.error is not None:
         raise found.error
     source, picture, notes = _read(found)
+    capture, told = _complete_capture(capture, picture, options)
     (one,) = decomposer(
-        picture, name=source.name, detail=False, faces="largest", region=options.region
+        picture,
+        name=source.name,
+        detail=False,
+        faces="largest",
+        region=options.region,
+        capture=capture,
     )
+    notes = (*notes, *told)
     others = note_others(one.faces_found or 1, 1, source.name)
     if others:
         notes = (*notes, f"{others[0].partition(';')[0]}; the largest one is read.")

@@ -19,6 +19,7 @@ from skinnet.inference._agreement import (
 )
 from skinnet.inference._fused_pigment import FusedPigment, FusedRegion, make_pigment
 from skinnet.inference._fusion import SHARED, Fusion
+from skinnet.inference._index_summary import SkinIndices
 from skinnet.inference._person_shot import PersonShot, describe_shot
 from skinnet.inference._uncertainty import (
     LEVEL,
@@ -29,6 +30,7 @@ from skinnet.inference._uncertainty import (
     summarise_mean,
 )
 from skinnet.inference.decomposition import Decomposition, _round_all
+from skinnet.inference.indices import _find_indices
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -46,8 +48,8 @@ class Person:
         pigments: `melanin` and `hemoglobin` of the whole skin, each with `mean`, `sd`, the 90 %
             `interval`, the number of `shots`, and their `agreement`: `q`, `degrees_of_freedom`, `p`
             and `birge_ratio`.
-        regions: The same of each region of the face, such as `regions["nose"].melanin.mean`; None
-            where no shot shows it. Empty if no face was looked for.
+        regions: The same of each region of the face, such as `regions["nose"].melanin.mean`, and
+            its `indices`; None where no shot shows it. Empty if no face was looked for.
         shots: Names of the shots.
         sessions: Number of the session of each of them, from 1; None for those that were left out.
         notes: Sentences that the user should read.
@@ -117,11 +119,14 @@ class Person:
         used, notes = _choose_shots(read)
         usable = [read[index] for index in used]
         fused = fuse_shots(usable)
-        rows = [_make_region(fused, row, usable[0].tops) for row in range(1 + len(REGION_NAMES))]
-        regions = rows[1:] if any(shot.has_face for shot in usable) else []
+        tops, optics = usable[0].tops, usable[0].model.get("optics")
+        whole, *regions = (
+            _make_region(fused, row, tops, optics) for row in range(1 + len(REGION_NAMES))
+        )
+        regions = regions if any(shot.has_face for shot in usable) else []
         session = dict(zip(used, (number_sessions(usable) + 1).tolist(), strict=True))
         return cls(
-            pigments=rows[0]._asdict(),
+            pigments={"melanin": whole.melanin, "hemoglobin": whole.hemoglobin},
             regions=dict(zip(REGION_NAMES, regions, strict=bool(regions))),
             shots=tuple(shot.name for shot in read),
             sessions=tuple(session.get(index) for index in range(len(read))),
@@ -131,7 +136,7 @@ class Person:
 
     def __repr__(self) -> str:
         pigments = ", ".join(
-            f"{name} {describe_mean(mean, self._find_log_sd(name))}"
+            f"{name} {describe_mean(mean, self.pigments[name].log_sd)}"
             for name, mean in self.means.items()
         )
         used = [session for session in self.sessions if session is not None]
@@ -169,9 +174,36 @@ class Person:
         find_factor(0.0, level)
         tops = dict(zip(PIGMENTS, self._read[0].tops, strict=True))
         return {
-            name: find_interval(mean, self._find_log_sd(name), tops[name], level)
+            name: find_interval(mean, self.pigments[name].log_sd, tops[name], level)
             for name, mean in self.means.items()
         }
+
+    def indices(self, level: float = LEVEL) -> SkinIndices | None:
+        """Compute colour, typology angle, instrument indices and nearest tone of the mean skin.
+
+        Args:
+            level: Probability that a true number lies in its interval, between 0 and 1.
+
+        Returns:
+            The indices, as of a `Decomposition`; None if the model's fractions do not belong to the
+            preset `measured`. Those of parts of the face are in `regions`.
+
+        Raises:
+            InputError: The level is no such probability.
+
+        Example:
+            >>> from skimage.data import astronaut
+            >>> from skinnet import Decomposer
+            >>> from skinnet.inference import Person
+            >>> shot = Decomposer(threads=1)(astronaut(), detail=False)
+            >>> low, high = Person.from_shots([shot, shot]).indices().typology_angle.interval
+            >>> low < shot.indices().typology_angle.value < high
+            True
+        """
+        find_factor(0.0, level)
+        melanin, hemoglobin = (self.pigments[name] for name in PIGMENTS)
+        means, log_sds = (melanin.mean, hemoglobin.mean), (melanin.log_sd, hemoglobin.log_sd)
+        return _find_indices(self._read[0].model.get("optics"), means, log_sds, level)
 
     def summary(self) -> dict[str, Any]:
         """Summarise the person as numbers for JSON.
@@ -181,6 +213,7 @@ class Person:
             `sd` and `interval` as the shot alone states them, `capture_known` and `notes`),
             `pigments` and `regions` (of each `melanin` and `hemoglobin` with `mean`, `sd`,
             `interval`, its probability `level`, the number of `shots`, and their `agreement`),
+            `indices` of the whole skin and of each region, as of a `Decomposition`,
             `shared_correlation` of the errors of two sessions, `notes`, `version` and `model`.
         """
         return {
@@ -189,16 +222,13 @@ class Person:
                 for one, session in zip(self._read, self.sessions, strict=True)
             ],
             "pigments": {name: one.to_json() for name, one in self.pigments.items()},
+            "indices": None if (indices := self.indices()) is None else indices.to_json(),
             "regions": {name: one.to_json() for name, one in self.regions.items()},
             "shared_correlation": SHARED,
             "notes": list(self.notes),
             "version": __version__,
             "model": self._read[0].model,
         }
-
-    def _find_log_sd(self, pigment: str) -> float:
-        mean, sd = self.pigments[pigment][:2]
-        return 0.0 if mean is None or sd is None else sd / mean
 
 
 def _choose_shots(read: Sequence[PersonShot]) -> tuple[list[int], list[str]]:
@@ -229,11 +259,14 @@ def _refuse_few(usable: Sequence[PersonShot]) -> None:
         )
 
 
-def _make_region(fused: tuple[Fusion, Fusion], row: int, tops: tuple[float, float]) -> FusedRegion:
+def _make_region(
+    fused: tuple[Fusion, Fusion], row: int, tops: tuple[float, float], optics: str | None
+) -> FusedRegion:
     melanin, hemoglobin = (
         make_pigment(each, row, top) for each, top in zip(fused, tops, strict=True)
     )
-    return FusedRegion(melanin, hemoglobin)
+    means, log_sds = (melanin.mean, hemoglobin.mean), (melanin.log_sd, hemoglobin.log_sd)
+    return FusedRegion(melanin, hemoglobin, _find_indices(optics, means, log_sds))
 
 
 def _summarise(shot: PersonShot) -> dict[str, Any]:

@@ -149,6 +149,20 @@ def test_intervals_are_those_of_the_level(person: Person) -> None:
         person.interval(2.0)
 
 
+def test_indices_are_those_of_the_fused_pigments(
+    person: Person, shots: dict[str, Decomposition]
+) -> None:
+    angles = [shot.indices().typology_angle for shot in shots.values()]
+    fused = person.indices().typology_angle
+    assert min(one.value for one in angles) <= fused.value <= max(one.value for one in angles)
+    assert fused.sd < max(one.sd for one in angles)
+    assert person.summary()["indices"]["typology_angle"]["value"] == round(fused.value, 4)
+    nose = person.summary()["regions"]["nose"]["indices"]
+    assert nose["monk_tone"]["value"] == person.regions["nose"].indices.monk_tone.value
+    with pytest.raises(InputError, match="probability between 0 and 1"):
+        person.indices(0.0)
+
+
 def test_the_summary_is_json(person: Person) -> None:
     summary = json.loads(json.dumps(person.summary(), allow_nan=False))
     assert [shot["name"] for shot in summary["shots"]] == list(person.shots)

@@ -9,6 +9,7 @@ import pytest
 from flat_decomposer import SKIN, WALL, names, run, save
 from PIL import Image
 
+from skinnet.cli import main
 from skinnet.images._mark import read_mark
 
 Run = Callable[..., tuple[int, str, str]]
@@ -137,3 +138,18 @@ def test_a_folder_that_cannot_be_written_is_reported(
     (tmp_path / "out" / "a_person.json").mkdir(parents=True)
     code, _, err = run("person", *shots, "-o", tmp_path / "out")
     assert code == 2 and names(tmp_path / "out") == ["a_person.json"]
+
+
+def test_what_is_known_of_the_capture_is_told_of_every_shot(
+    tmp_path: Path, astronaut: np.ndarray, capsys: pytest.CaptureFixture[str]
+) -> None:
+    photos = [tmp_path / "a.png", tmp_path / "b.png"]
+    for photo, pixels in zip(photos, (astronaut, astronaut[:, ::-1]), strict=True):
+        Image.fromarray(pixels).save(photo)
+    arguments = ["person", *map(str, photos), "--json", "--light"]
+    assert main([*arguments, "flash"]) == 0
+    summary = json.loads(capsys.readouterr().out)
+    known = [shot["capture_known"] for shot in summary["shots"]]
+    assert known == [["light", "temperature"]] * 2
+    assert main([*arguments, "flsh"]) == 2
+    assert "flsh" in capsys.readouterr().err
