@@ -43,6 +43,7 @@ def main(argv: Sequence[str] | None = None) -> int:
     verbs = parser.add_subparsers(title="verbs", required=True, metavar="VERB")
     _add_predict(verbs)
     _add_edit(verbs)
+    _add_person(verbs)
     for verb, help_ in PIPELINE.items():
         verbs.add_parser(verb, help=help_, add_help=False)
     arguments = list(sys.argv[1:] if argv is None else argv)
@@ -78,21 +79,7 @@ def _run_pipeline(verb: str, arguments: list[str]) -> int:
 
 def _add_predict(verbs: "argparse._SubParsersAction[argparse.ArgumentParser]") -> None:
     verb = verbs.add_parser("predict", help="make maps, a panel and a summary of photographs")
-    verb.add_argument(
-        "input",
-        nargs="+",
-        help="photographs, folders of them, patterns such as '*.jpg', or - for standard input",
-    )
-    verb.add_argument(
-        "-r", "--recursive", action="store_true", help="search the subfolders of folders too"
-    )
-    verb.add_argument(
-        "-o",
-        "--output",
-        type=Path,
-        metavar="DIR",
-        help="folder to write to; by default skinmaps in the photograph's folder",
-    )
+    _add_inputs(verb)
     verb.add_argument(
         "--json", action="store_true", help="print each summary as one line of JSON, nothing else"
     )
@@ -110,6 +97,40 @@ def _add_predict(verbs: "argparse._SubParsersAction[argparse.ArgumentParser]") -
     )
     _add_common(verb)
     verb.set_defaults(run=_predict)
+
+
+def _add_person(verbs: "argparse._SubParsersAction[argparse.ArgumentParser]") -> None:
+    verb = verbs.add_parser(
+        "person",
+        help="fuse shots of one person by their uncertainty, and check that they agree",
+        description="Fuse two shots or more of one person, region by region, into a panel and a "
+        "summary. One shot that is plainly unlike the others is left out. The exit code is 2 if "
+        "not all shots could be used.",
+    )
+    _add_inputs(verb)
+    verb.add_argument(
+        "--json", action="store_true", help="print the summary as one line of JSON, nothing else"
+    )
+    _add_common(verb)
+    verb.set_defaults(run=_person)
+
+
+def _add_inputs(verb: argparse.ArgumentParser) -> None:
+    verb.add_argument(
+        "input",
+        nargs="+",
+        help="photographs, folders of them, patterns such as '*.jpg', or - for standard input",
+    )
+    verb.add_argument(
+        "-r", "--recursive", action="store_true", help="search the subfolders of folders too"
+    )
+    verb.add_argument(
+        "-o",
+        "--output",
+        type=Path,
+        metavar="DIR",
+        help="folder to write to; by default skinmaps in the photograph's folder",
+    )
 
 
 def _add_edit(verbs: "argparse._SubParsersAction[argparse.ArgumentParser]") -> None:
@@ -187,6 +208,12 @@ def _predict(options: argparse.Namespace) -> int:
     from skinnet.inference._photo_verbs import predict
 
     return _OK if predict(options) else _BAD_INPUT
+
+
+def _person(options: argparse.Namespace) -> int:
+    from skinnet.inference._person_verb import person
+
+    return _OK if person(options) else _BAD_INPUT
 
 
 def _edit(options: argparse.Namespace) -> int:

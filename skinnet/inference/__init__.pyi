@@ -10,6 +10,7 @@ from .onnx_model import OnnxModel as OnnxModel
 from .onnx_model import OutputInfo as OutputInfo
 from .onnx_model import open_model as open_model
 from .panel import draw_panel as draw_panel
+from .person import Person as Person
 from .results import write_results as write_results
 
 __all__ = [
@@ -22,6 +23,7 @@ __all__ = [
     "Decomposition",
     "OnnxModel",
     "OutputInfo",
+    "Person",
     "compute_indices",
     "draw_panel",
     "open_model",
