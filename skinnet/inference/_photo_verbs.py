@@ -21,6 +21,7 @@ from skinnet.images.picture import Picture
 from skinnet.inference._face_choice import check_choice
 from skinnet.inference._messages import note, print_line, report
 from skinnet.inference._own_results import Source, choose_edit_target, choose_result_stem
+from skinnet.inference._references.options import References, read_references
 from skinnet.inference.decomposer import Decomposer
 from skinnet.inference.decomposition import Decomposition
 from skinnet.inference.results import (
@@ -46,10 +47,11 @@ def predict(options: argparse.Namespace) -> bool:
     decomposer = _make_decomposer(options)
     decomposer.load()
     found = walk(options.input, options.recursive)
+    references = read_references(options, len(found.pictures))
     counts: Counter[str] = Counter()
     for picture in found.pictures:
         try:
-            counts[_predict_one(decomposer, picture, options)] += 1
+            counts[_predict_one(decomposer, picture, options, references)] += 1
         except BrokenPipeError:
             raise
         except (InputError, OSError) as error:
@@ -70,11 +72,14 @@ def _make_decomposer(options: argparse.Namespace) -> Decomposer:
     return Decomposer(options.model)
 
 
-def _predict_one(decomposer: Decomposer, found: Found, options: argparse.Namespace) -> str:
+def _predict_one(
+    decomposer: Decomposer, found: Found, options: argparse.Namespace, references: References
+) -> str:
     """Decompose a picture, and write its results. Returns under what it is counted."""
     if found.error is not None:
         raise found.error
     source, picture, notes = _read(found)
+    capture, told = references.tell(picture)
     try:
         decompositions = decomposer(
             picture,
@@ -82,12 +87,13 @@ def _predict_one(decomposer: Decomposer, found: Found, options: argparse.Namespa
             detail=options.detail,
             faces=options.faces,
             region=options.region,
+            capture=capture,
         )
     except NoFaceError as error:
         report(error)
         return _FACELESS
     try:
-        _write(source, picture, decompositions, notes, options)
+        _write(source, picture, decompositions, (*notes, *told), options)
     except InputError as error:
         report(error)
         return _WRITTEN_NOT
@@ -155,8 +161,10 @@ def edit(options: argparse.Namespace) -> None:
     check_choice(options.faces)
     if options.output is not None:
         find_format(options.output)
+    references = read_references(options, 1)
     decomposer = _make_decomposer(options)
     source, picture, notes = _read(find_one(options.input))
+    capture, told = references.tell(picture)
     suffix, changes = choose_suffix(picture, "" if source.path is None else source.path.suffix)
     target = choose_edit_target(source, options.output, suffix)
     edited = decomposer.edit_picture(
@@ -166,10 +174,11 @@ def edit(options: argparse.Namespace) -> None:
         name=source.name,
         faces=options.faces,
         region=options.region,
+        capture=capture,
     )
     losses = write_picture(target, edited, Mark("edit", EDITED, source.digest))
     changes = () if options.output else changes
-    for sentence in (*notes, *edited.notes, *changes, *losses):
+    for sentence in (*notes, *told, *edited.notes, *changes, *losses):
         note(sentence)
     print_line(f"{source.name}: {target}")
 
