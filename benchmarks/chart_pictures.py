@@ -20,7 +20,7 @@ LIGHTS = (
 """Lights of the pictures, as colour-science names them."""
 
 _ROWS, _COLUMNS = 4, 6
-_WIDTH, _HEIGHT = 1200, 900
+_WIDTH, _HEIGHT = 1080, 810
 _PATCH, _BORDER = 0.84, 0.3
 """Side of a patch, and width of the frame around all of them, in distances between patches."""
 
@@ -72,8 +72,11 @@ class View(NamedTuple):
 
 
 def load_patches() -> Array:
-    """Load the measured reflectance [24, 33] of the patches of the classic chart."""
-    spectra = colour.SDS_COLOURCHECKERS["BabelColor Average"].values()
+    """Load the reflectance [24, 33] of the patches of a classic chart.
+
+    It is another copy than those whose mean the reading takes as the truth.
+    """
+    spectra = colour.SDS_COLOURCHECKERS["ColorChecker N Ohta"].values()
     return np.array([each.copy().align(_SHAPE).values for each in spectra])
 
 

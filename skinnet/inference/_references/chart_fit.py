@@ -33,6 +33,10 @@ _UNEVEN, _LIT = 0.15, 0.18
 """Relative spread within a patch from which a shadow's edge crosses it, and how much the logarithm
 of the light on a patch may differ from that on the others."""
 
+_STEPS, _FEW_STEPS, _FINALISTS = 40, 5, 3
+"""Largest number of steps of a fit; that of the first fit of each light; and lights that are fitted
+to the end."""
+
 _TONE, _TONE_SD = np.array((0.07, 0.25, 0.0, 0.04)), np.array((0.12, 0.3, 0.015, 0.08))
 """Prior of contrast, bend, flare and saturation: between linear light and usual photographs."""
 
@@ -114,10 +118,10 @@ def fit_spectra(samples: PatchSamples, chart: Chart, plain: Fit) -> list[Fit]:
         chart: A chart with spectra.
         plain: The fit of a matrix, whose choice of patches is taken over.
     """
-    return sorted(
-        (_fit_light(name, samples, chart, plain) for name in list_lights()),
-        key=lambda fit: fit.cost,
-    )
+    quick = {name: _fit_light(name, samples, chart, plain, _FEW_STEPS) for name in list_lights()}
+    order = sorted(quick, key=lambda name: quick[name].cost)
+    best = {name: _fit_light(name, samples, chart, plain, _STEPS) for name in order[:_FINALISTS]}
+    return sorted((quick | best).values(), key=lambda fit: fit.cost)
 
 
 def weigh_lights(fits: list[Fit]) -> dict[str, float]:
@@ -128,7 +132,7 @@ def weigh_lights(fits: list[Fit]) -> dict[str, float]:
     }
 
 
-def _fit_light(name: str, samples: PatchSamples, chart: Chart, plain: Fit) -> Fit:
+def _fit_light(name: str, samples: PatchSamples, chart: Chart, plain: Fit, steps: int) -> Fit:
     assert chart.spectra is not None
     day = name == "D"
     exposure = math.log(max(float(plain.matrix.sum(0) @ LUMINANCE_WEIGHTS), 1e-3))
@@ -147,7 +151,7 @@ def _fit_light(name: str, samples: PatchSamples, chart: Chart, plain: Fit) -> Fi
         return math.exp(each[COMPONENTS + 2]) * make_matrix(light, sensitivity, balance)
 
     model = _Model(mean, mean, sd, low, high, make, chart.spectra)
-    fit, found = _fit(model, samples, chart, plain.lit, saturated=True, start=plain)
+    fit, found = _fit(model, samples, chart, plain.lit, saturated=True, start=plain, steps=steps)
     prior = _DAYLIGHT if day else (1 - _DAYLIGHT) / (len(list_lights()) - 1)
     return fit._replace(
         cost=fit.cost - 2 * math.log(prior),
@@ -165,6 +169,7 @@ def _fit(
     lit: NDArray[np.bool_],
     saturated: bool,
     start: Fit | None = None,
+    steps: int = _STEPS,
 ) -> tuple[Fit, Array]:
     rounds = _ROUNDS if start is None else 1
     display = _encode(samples)
@@ -190,7 +195,7 @@ def _fit(
     trust = lit.astype(float)
     for last in range(rounds):
         first = first.clip(low + 1e-6, high - 1e-6)
-        found = least_squares(residual, first, bounds=(low, high), max_nfev=40)
+        found = least_squares(residual, first, bounds=(low, high), max_nfev=steps)
         first = found.x
         errors = np.sqrt(np.mean(((predict(first) - display) / _SD) ** 2, 1))
         if last < rounds - 1:
