@@ -143,6 +143,9 @@ class CaptureProfile:
         Args:
             path: The file.
 
+        Returns:
+            The profile.
+
         Raises:
             InputError: It is missing, or not a profile.
         """
@@ -351,5 +354,5 @@ def _round(capture: Capture) -> Capture:
     return Capture(**parts)
 
 
-def _format(balance: Sequence[float]) -> str:
+def _format(balance: Sequence[float] | NDArray[Any]) -> str:
     return ", ".join(f"{one:.2f}" for one in balance)

@@ -325,7 +325,7 @@ class Decomposer:
         """Note that a capture profile does not fit what is seen without it."""
         linear = {key: value for key, value in known.items() if key == "known_linear"}
         blind = self._encode(applied.picture.srgb, subject, linear)["white_balance"][0]
-        notes = applied.doubt(subject.describe(name), blind)
+        notes = applied.doubt(subject.describe(name), blind.tolist())
         return subject._replace(notes=(*subject.notes, *notes))
 
     def _edit_in_place(

@@ -1,5 +1,6 @@
 """Finds a colour chart in a photograph, and the colours of its patches."""
 
+import warnings
 from collections.abc import Iterator
 from dataclasses import replace
 from typing import NamedTuple
@@ -135,14 +136,17 @@ def _find_at_width(
 def _find_quads(srgb: NDArray[np.uint8], chart: Chart) -> Array:
     """Quadrilaterals [n, 4, 2] that may be patches, in pixels."""
     detector = require_chart_extra()
-    found = detector.segmenter_default(
-        srgb.astype(np.float32) / 255,
-        apply_cctf_encoding=False,
-        additional_data=True,
-        working_width=srgb.shape[1],
-        swatches=len(chart.cells),
-        swatch_minimum_area_factor=200 * (srgb.shape[1] / _WIDTHS[0]) ** 2,
-    )
+    scale = srgb.shape[1] / _WIDTHS[0]
+    with np.errstate(all="ignore"), warnings.catch_warnings():  # a picture of one colour
+        warnings.simplefilter("ignore")
+        found = detector.segmenter_default(
+            srgb.astype(np.float32) / 255,
+            apply_cctf_encoding=False,
+            additional_data=True,
+            working_width=srgb.shape[1],
+            swatches=len(chart.cells),
+            swatch_minimum_area_factor=200 * scale**2,
+        )
     return np.asarray(found.swatches, float).reshape(-1, 4, 2) + 0.5
 
 
@@ -204,9 +208,9 @@ def _measure_misfit(linear: NDArray[np.float32], homography: Array, chart: Chart
     trust = np.ones((len(left), 1))
     for _ in range(_ROUNDS):
         solution = np.linalg.lstsq(trust * left, trust * right, rcond=None)[0]
-        residual = np.hypot.reduce(left @ solution - right, axis=1, keepdims=True)
+        residual = np.linalg.norm(left @ solution - right, axis=1, keepdims=True)
         middle = float(np.median(residual))
         trust = 1 / np.sqrt(1 + (residual / (2 * middle + 1e-9)) ** 2)
     degrees = 1 - solution.shape[0] / len(left)
-    spread = np.median(np.hypot.reduce(right - np.median(right, 0), axis=1))
-    return middle / float(spread) / max(degrees, 0.1)
+    spread = float(np.median(np.linalg.norm(right - np.median(right, 0), axis=1)))
+    return float(middle / spread / max(degrees, 0.1))

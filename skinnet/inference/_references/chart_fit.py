@@ -23,7 +23,7 @@ from skinnet.inference._references.tone_curve import ToneCurve
 
 Array = NDArray[np.float64]
 
-_SD = 0.012
+_SD = 0.018
 """Standard deviation of the error of a patch's colour in display sRGB."""
 
 _OUTLIER, _ROUNDS = 3.0, 4
@@ -90,23 +90,24 @@ class _Model(NamedTuple):
     inputs: Array
 
 
-def fit_colours(samples: PatchSamples, chart: Chart) -> Fit:
-    """Fit a 3 x 3 matrix from the colours of the patches to linear light."""
-    observed = ToneCurve(*_TONE).undo(_encode(samples))
-    usable = (samples.spread < _UNEVEN) & ~samples.clipped
+def find_usable(samples: PatchSamples) -> NDArray[np.bool_]:
+    """Find the patches [n] that are neither saturated nor crossed by a shadow's edge."""
+    return np.asarray((samples.spread < _UNEVEN) & ~samples.clipped)
+
+
+def find_evenly_lit(samples: PatchSamples, chart: Chart) -> NDArray[np.bool_]:
+    """Find the usable patches [n] in the light that most are in."""
+    observed, usable = ToneCurve(*_TONE).undo(_encode(samples)), find_usable(samples)
     shade = find_lit(observed, chart.colours, find_places(chart), usable)
-    lit = usable & (np.abs(shade) < _LIT)
+    return np.asarray(usable & (np.abs(shade) < _LIT))
+
+
+def fit_colours(samples: PatchSamples, chart: Chart, lit: NDArray[np.bool_]) -> Fit:
+    """Fit a 3 x 3 matrix from the colours of the lit patches to linear light."""
+    observed = ToneCurve(*_TONE).undo(_encode(samples))
     start = np.linalg.lstsq(chart.colours[lit], observed[lit], rcond=None)[0]
-    free = np.full(9, np.inf)
-    model = _Model(
-        start.ravel(),
-        start.ravel(),
-        free,
-        -free,
-        free,
-        lambda each: each.reshape(3, 3),
-        chart.colours,
-    )
+    flat, free = np.asarray(start, float).ravel(), np.full(9, np.inf)
+    model = _Model(flat, flat, free, -free, free, _make_square, chart.colours)
     return _fit(model, samples, chart, lit, saturated=False)[0]
 
 
@@ -130,6 +131,10 @@ def weigh_lights(fits: list[Fit]) -> dict[str, float]:
     return {
         str(fit.light): float(share) for fit, share in zip(fits, shares / shares.sum(), strict=True)
     }
+
+
+def _make_square(each: Array) -> Array:
+    return each.reshape(3, 3)
 
 
 def _fit_light(name: str, samples: PatchSamples, chart: Chart, plain: Fit, steps: int) -> Fit:
@@ -187,7 +192,7 @@ def _fit(
 
     def residual(each: Array) -> Array:
         errors = (predict(each) - display) / _SD * np.sqrt(trust)[:, None]
-        return np.r_[errors.ravel(), ((each - mean) / sd)]
+        return np.concatenate([errors.ravel(), (each - mean) / sd])
 
     first = np.r_[np.maximum(tone_mean, (0, 0, 0.003, 0)), 0, 0, model.start]
     if start is not None:

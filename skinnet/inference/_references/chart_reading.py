@@ -11,7 +11,9 @@ from skinnet.inference._references.chart import Chart, require_chart_extra
 from skinnet.inference._references.chart_detection import find_chart
 from skinnet.inference._references.chart_fit import (
     Fit,
+    find_evenly_lit,
     find_places,
+    find_usable,
     fit_colours,
     fit_spectra,
     weigh_lights,
@@ -27,6 +29,9 @@ _GREY, _BRIGHTEST = 0.4, 0.7
 
 _MOST_CLIPPED, _LEAST_LIT = 0.4, 0.65
 """Share of the patches that may be overexposed, and that must be in one light."""
+
+_LEAST_USABLE = 0.45
+"""Share of the patches that must have one colour that is not saturated."""
 
 _DARKEST = 0.03
 """Least linear value of the brightest patch."""
@@ -82,15 +87,9 @@ def read_chart(picture: Picture, chart: Chart) -> ChartReading:
 def read_samples(samples: PatchSamples, chart: Chart, who: str) -> ChartReading:
     """Read the colours of a chart's patches; `who` begins sentences about it."""
     _refuse_exposure(samples, chart, who)
-    plain = fit_colours(samples, chart)
-    lit = plain.lit & (plain.trust > 0)
-    seen = int((~samples.clipped).sum())
-    if plain.lit.sum() < _LEAST_LIT * seen:
-        raise InputError(
-            f"{who} is not in one light: only {plain.lit.sum()} of its {seen} patches "
-            "are evenly lit, and the others lie in the shade, under another light or in a "
-            "reflection. Photograph it in the light that falls on the face."
-        )
+    evenly_lit = find_evenly_lit(samples, chart)
+    _refuse_shade(samples, evenly_lit, who)
+    plain = fit_colours(samples, chart, evenly_lit)
     correction, delta_e = _correct(samples, chart, plain)
     _refuse_colours(delta_e, who)
     fits = [] if chart.spectra is None else fit_spectra(samples, chart, plain)
@@ -108,7 +107,7 @@ def read_samples(samples: PatchSamples, chart: Chart, who: str) -> ChartReading:
         capture, tone = linear_capture, ToneCurve()
     else:
         tone = chosen.tone
-    return ChartReading(capture, linear_capture, tone, correction, delta_e, lit, shares)
+    return ChartReading(capture, linear_capture, tone, correction, delta_e, evenly_lit, shares)
 
 
 def is_linear(tone: ToneCurve) -> bool:
@@ -117,16 +116,31 @@ def is_linear(tone: ToneCurve) -> bool:
 
 
 def _refuse_exposure(samples: PatchSamples, chart: Chart, who: str) -> None:
-    clipped = int(samples.clipped.sum())
+    clipped, usable = int(samples.clipped.sum()), int(find_usable(samples).sum())
     if clipped > _MOST_CLIPPED * len(chart.cells):
         raise InputError(
             f"{who} is overexposed: {clipped} of its {len(chart.cells)} patches have lost their "
             "colour. Expose so that its white stays below 250 of 255."
         )
+    if usable < _LEAST_USABLE * len(chart.cells):
+        raise InputError(
+            f"{who} cannot be read: only {usable} of its {len(chart.cells)} patches have one "
+            "colour. Give a sharp picture without reflections on the chart."
+        )
     if samples.linear.max() < _DARKEST:
         raise InputError(
             f"{who} is too dark: its brightest patch has {samples.linear.max():.1%} of white. Give "
             "it more light, or expose longer."
+        )
+
+
+def _refuse_shade(samples: PatchSamples, lit: NDArray[np.bool_], who: str) -> None:
+    seen = int((~samples.clipped).sum())
+    if lit.sum() < _LEAST_LIT * seen:
+        raise InputError(
+            f"{who} is not in one light: only {lit.sum()} of its {seen} patches are evenly lit, "
+            "and the others lie in the shade, under another light or in a reflection. Photograph "
+            "it in the light that falls on the face."
         )
 
 
@@ -148,11 +162,11 @@ def _correct(samples: PatchSamples, chart: Chart, fit: Fit) -> tuple[Array, Arra
     observed = _straighten(samples, chart, fit)
     weights = np.sqrt(fit.trust)[:, None] / (chart.colours.mean(1, keepdims=True) + 0.05)
     correction = np.linalg.lstsq(weights * observed, weights * chart.colours, rcond=None)[0]
-    lab = [
+    found, expected = (
         colour.XYZ_to_Lab(colour.RGB_to_XYZ(each.clip(0), "sRGB"))
         for each in (observed @ correction, chart.colours)
-    ]
-    delta_e = np.asarray(colour.delta_E(*lab, method="CIE 2000"))
+    )
+    delta_e = np.asarray(colour.delta_E(found, expected, method="CIE 2000"))
     return correction, np.where(fit.lit & ~samples.clipped, delta_e, np.nan)
 
 

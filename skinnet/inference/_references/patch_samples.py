@@ -17,6 +17,10 @@ _CLIPPED, _CLIPPED_SHARE = 0.955, 0.02
 that may be."""
 
 
+_DARK = 0.03
+"""Linear value that is added to a patch's mean, since dark patches are noisy."""
+
+
 class PatchSamples(NamedTuple):
     """Mean colours of patches.
 
@@ -52,7 +56,7 @@ def sample_patches(linear: NDArray[np.float32], homography: Array, cells: Array)
     brightness = pixels.mean(-1)
     return PatchSamples(
         np.where(inside[:, None], _trim(pixels), np.nan),
-        brightness.std(1) / np.maximum(brightness.mean(1), 1e-3),
+        brightness.std(1) / (brightness.mean(1) + _DARK),
         (pixels >= _CLIPPED).any(-1).mean(1) > _CLIPPED_SHARE,
     )
 

@@ -1,5 +1,6 @@
 """A capture profile, as it is used for one photograph."""
 
+from collections.abc import Sequence
 from dataclasses import replace
 from typing import Any, NamedTuple
 
@@ -26,7 +27,7 @@ class Applied(NamedTuple):
     profile: CaptureProfile | None
     original: Picture
 
-    def doubt(self, who: str, blind: Any) -> tuple[str, ...]:
+    def doubt(self, who: str, blind: Sequence[float]) -> tuple[str, ...]:
         """Note that the profile does not fit what is seen without it."""
         if self.profile is None or not isinstance(self.capture, Capture):
             return ()
