@@ -6,8 +6,8 @@ from pathlib import Path
 
 from skinnet.errors import InputError
 from skinnet.images._walk import find_one
-from skinnet.images.photograph import read_picture
-from skinnet.inference._messages import print_line
+from skinnet.inference._messages import note, print_line
+from skinnet.inference._photo_verbs import _read
 from skinnet.inference._references.chart import CLASSIC
 from skinnet.inference._references.options import read_references
 from skinnet.inference.capture_profile import CaptureProfile
@@ -18,16 +18,15 @@ def capture(options: argparse.Namespace) -> None:
     references = read_references(options, 1)
     target: Path = options.output
     _refuse_other_file(target)
-    found = find_one(options.input)
-    if found.error is not None:
-        raise found.error
-    picture = read_picture(Path(found.path), found.path)
+    source, picture, notes = _read(find_one(options.input))
     if references.place is None:
         profile = CaptureProfile.from_chart(picture, references.chart or CLASSIC)
     else:
         profile = CaptureProfile.from_white(picture, references.place, references.colour)
     profile.save(target)
-    print_line(f"{found.path}: {describe_profile(profile)}; {target}")
+    for sentence in (*notes, *picture.notes):
+        note(sentence)
+    print_line(f"{source.name}: {describe_profile(profile)}; {target}")
 
 
 def describe_profile(profile: CaptureProfile) -> str:

@@ -128,7 +128,7 @@ class Capture(NamedTuple):
         Example:
             >>> from skimage.data import astronaut
             >>> from skinnet.inference import Capture
-            >>> capture = Capture.from_reference(astronaut(), (400, 60, 420, 80))  # the wall
+            >>> capture = Capture.from_reference(astronaut(), (300, 20, 320, 40))  # the wall
             >>> len(capture.white_balance), capture.exposure is None
             (2, True)
         """

@@ -60,7 +60,7 @@ class CaptureProfile:
         >>> card = np.full((40, 60, 3), (150, 140, 120), np.uint8)
         >>> profile = CaptureProfile.from_white(card, (30, 20), 0.18)
         >>> [round(value, 2) for value in profile.capture.white_balance]
-        [0.14, -0.19]
+        [0.11, -0.17]
     """
 
     capture: Capture

@@ -1,5 +1,6 @@
 """What the chart in a photograph tells of its capture."""
 
+import math
 from typing import NamedTuple
 
 import numpy as np
@@ -7,6 +8,7 @@ from numpy.typing import NDArray
 
 from skinnet.errors import InputError
 from skinnet.images.picture import Picture
+from skinnet.images.srgb import srgb_to_linear
 from skinnet.inference._references.chart import Chart, require_chart_extra
 from skinnet.inference._references.chart_detection import find_chart
 from skinnet.inference._references.chart_fit import (
@@ -20,7 +22,7 @@ from skinnet.inference._references.chart_fit import (
 )
 from skinnet.inference._references.patch_samples import PatchSamples
 from skinnet.inference._references.tone_curve import ToneCurve
-from skinnet.inference.capture import Capture
+from skinnet.inference.capture import _MOST_COLOURED, _TO_CAMERA, Capture
 
 Array = NDArray[np.float64]
 
@@ -96,6 +98,7 @@ def read_samples(samples: PatchSamples, chart: Chart, who: str) -> ChartReading:
     shares = weigh_lights(fits) if fits else {}
     chosen = fits[0] if fits and fits[0].cost < _MOST_COST else plain
     white = _find_white(samples, chart, chosen)
+    _refuse_cast(chosen.tone.apply(_GREY * white), who)
     shown = _tell_white(chosen.tone, white)
     told = _tell_light(chosen, shares)
     straight = _tell_white(ToneCurve(), white)
@@ -151,6 +154,16 @@ def _refuse_colours(delta_e: Array, who: str) -> None:
             f"{who} does not have the chart's colours: after correction they differ by {mean:.1f} "
             f"in the mean and {most:.1f} at most (CIEDE2000), and {_MOST_MEAN:g} and {_MOST_ANY:g} "
             "are accepted. It may be another chart, faded, or in mixed light."
+        )
+
+
+def _refuse_cast(grey: Array, who: str) -> None:
+    red, green, blue = np.log(np.maximum(_TO_CAMERA @ srgb_to_linear(grey), 1e-3)).tolist()
+    if math.hypot(red - green, blue - green) > _MOST_COLOURED:
+        raise InputError(
+            f"{who} is in strongly coloured light: the log R/G and log B/G of its white are "
+            f"{red - green:.2f} and {blue - green:.2f}. Set the camera's white balance to the "
+            "light, and photograph again."
         )
 
 

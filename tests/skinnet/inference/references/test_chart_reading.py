@@ -117,7 +117,10 @@ def _scale(factor: Any) -> Any:
             "not in one light|does not have the chart's colours",
         ),
         (lambda linear, chart: np.random.default_rng(0).permutation(linear), "light|colours"),
-        (_scale(lambda chart: (1.3, 0.3, 0.1)), "is coloured: .* Choose something white or grey"),
+        (
+            _scale(lambda chart: (1.3, 0.3, 0.1)),
+            "is in strongly coloured light: .* Set the camera's white balance",
+        ),
     ],
 )
 def test_what_cannot_be_trusted_is_refused(change: Any, sentence: str, classic: Chart) -> None:
