@@ -30,7 +30,8 @@ _GREY, _BRIGHTEST = 0.4, 0.7
 """Reflectance of the grey whose colour stands for that of white, and its largest linear value."""
 
 _MOST_CLIPPED, _LEAST_LIT = 0.4, 0.65
-"""Share of the patches that may be overexposed, and that must be in one light."""
+"""Share of the patches that may be overexposed, and share of those with one colour that must be in
+one light."""
 
 _LEAST_USABLE = 0.45
 """Share of the patches that must have one colour that is not saturated."""
@@ -138,7 +139,7 @@ def _refuse_exposure(samples: PatchSamples, chart: Chart, who: str) -> None:
 
 
 def _refuse_shade(samples: PatchSamples, lit: NDArray[np.bool_], who: str) -> None:
-    seen = int((~samples.clipped).sum())
+    seen = int(find_usable(samples).sum())
     if lit.sum() < _LEAST_LIT * seen:
         raise InputError(
             f"{who} is not in one light: only {lit.sum()} of its {seen} patches are evenly lit, "
