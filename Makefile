@@ -54,6 +54,7 @@ bench: $(READY)
 	$(BIN)/python -m benchmarks.constancy
 	$(BIN)/python -m benchmarks.identifiability
 	$(BIN)/python -m benchmarks.charts
+	$(BIN)/python -m benchmarks.indices
 
 wheel: $(READY)
 	$(BIN)/python -m build --wheel

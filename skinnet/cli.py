@@ -98,6 +98,12 @@ def _add_predict(verbs: "argparse._SubParsersAction[argparse.ArgumentParser]") -
         "--json", action="store_true", help="print each summary as one line of JSON, nothing else"
     )
     verb.add_argument(
+        "--csv",
+        type=Path,
+        metavar="FILE",
+        help="append one row for each face, and one with the reason for each file that is not read",
+    )
+    verb.add_argument(
         "--no-detail",
         dest="detail",
         action="store_false",
@@ -207,6 +213,24 @@ def _add_common(verb: argparse.ArgumentParser) -> None:
         help="the profile of the session, which skinnet capture makes",
     )
     _add_references(verb)
+    _add_capture(verb)
+
+
+def _add_capture(verb: argparse.ArgumentParser) -> None:
+    """Add what may be known of the light and the camera."""
+    known = verb.add_argument_group("what is known of the light and the camera")
+    known.add_argument(
+        "--camera",
+        metavar="NAME",
+        help="the camera, such as 'Nikon D700', or exif for the one that each photograph's EXIF "
+        "names; RAW files name theirs themselves",
+    )
+    known.add_argument(
+        "--light",
+        metavar="NAME",
+        help="the light: daylight, D65 or D5500K for daylight of a temperature, flash, A (tungsten)"
+        ", FL2, FL7 or FL11 (fluorescent), LED-B1, LED-B3, LED-B5 or LED-V1",
+    )
 
 
 def _predict(options: argparse.Namespace) -> int:

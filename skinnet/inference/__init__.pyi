@@ -2,6 +2,7 @@ from .capture import Capture as Capture
 from .capture_profile import CaptureProfile as CaptureProfile
 from .decomposer import Decomposer as Decomposer
 from .decomposition import Decomposition as Decomposition
+from .indices import compute_indices as compute_indices
 from .onnx_model import CAPTURE_NAMES as CAPTURE_NAMES
 from .onnx_model import MAP_NAMES as MAP_NAMES
 from .onnx_model import ONNX_FORMAT as ONNX_FORMAT
@@ -23,6 +24,7 @@ __all__ = [
     "Decomposition",
     "OnnxModel",
     "OutputInfo",
+    "compute_indices",
     "draw_panel",
     "open_model",
     "write_results",

@@ -18,10 +18,13 @@ from skinnet.images._write import choose_suffix, find_format, write_picture
 from skinnet.images.faces._face_models import open_ahead
 from skinnet.images.photograph import read_picture
 from skinnet.images.picture import Picture
+from skinnet.inference._capture_inputs import make_capture_inputs
 from skinnet.inference._face_choice import check_choice
-from skinnet.inference._messages import note, print_line, report
+from skinnet.inference._face_rows import FaceTable
+from skinnet.inference._messages import describe, note, print_line, report
 from skinnet.inference._own_results import Source, choose_edit_target, choose_result_stem
 from skinnet.inference._references.options import References, read_references
+from skinnet.inference.capture import Capture
 from skinnet.inference.decomposer import Decomposer
 from skinnet.inference.decomposition import Decomposition
 from skinnet.inference.results import (
@@ -40,24 +43,29 @@ _READ, _FACELESS, _WRITTEN_NOT, _READ_NOT = (
 )
 """What becomes of an input, as the count at the end of a run says it."""
 
+_EXIF = "exif"
+"""The value of --camera for the camera that the EXIF of each photograph names."""
+
 
 def predict(options: argparse.Namespace) -> bool:
     """Decompose every input; report bad inputs and continue. Returns whether none was bad."""
     check_choice(options.faces)
     decomposer = _make_decomposer(options)
     decomposer.load()
+    capture = _make_capture(options, decomposer)
     found = walk(options.input, options.recursive)
     references = read_references(options, len(found.pictures))
+    table = FaceTable(options.csv)
     counts: Counter[str] = Counter()
     for picture in found.pictures:
         try:
-            counts[_predict_one(decomposer, picture, options, references)] += 1
+            counts[_predict_one(decomposer, picture, options, references, capture, table)] += 1
         except BrokenPipeError:
             raise
         except (InputError, OSError) as error:
             counts[_READ_NOT] += 1
-            report(error)
-    for sentence in found.notes:
+            _report_failure(table, _name(picture), error)
+    for sentence in (*found.notes, *table.notes):
         note(sentence)
     single = len(found.pictures) == 1 and found.pictures[0].path == options.input[0]
     if not single or found.passed_over or len(options.input) > 1:
@@ -72,14 +80,42 @@ def _make_decomposer(options: argparse.Namespace) -> Decomposer:
     return Decomposer(options.model)
 
 
+def _make_capture(options: argparse.Namespace, decomposer: Decomposer) -> Capture:
+    """What the options tell of the capture, checked before any photograph is read."""
+    camera = None if options.camera == _EXIF else options.camera
+    capture = Capture.from_names(camera, options.light)
+    if any(part is not None for part in capture):
+        make_capture_inputs(capture, decomposer.encoder)
+    return capture
+
+
+def _complete_capture(
+    capture: Capture, picture: Picture, options: argparse.Namespace
+) -> tuple[Capture, tuple[str, ...]]:
+    """Add the camera that EXIF names, if that is asked for; or a note that it names none."""
+    if options.camera != _EXIF:
+        return capture, ()
+    told = Capture.from_photograph(picture)
+    if told.camera is None:
+        note = "EXIF names no camera whose sensitivities are measured; it is read without."
+        return capture, (f"{picture.name}: {note}",)
+    return capture._replace(camera=told.camera), ()
+
+
 def _predict_one(
-    decomposer: Decomposer, found: Found, options: argparse.Namespace, references: References
+    decomposer: Decomposer,
+    found: Found,
+    options: argparse.Namespace,
+    references: References,
+    capture: Capture,
+    table: FaceTable,
 ) -> str:
     """Decompose a picture, and write its results. Returns under what it is counted."""
     if found.error is not None:
         raise found.error
     source, picture, notes = _read(found)
-    capture, told = references.tell(picture)
+    capture, capture_notes = _complete_capture(capture, picture, options)
+    known, told = references.tell(picture, capture)
     try:
         decompositions = decomposer(
             picture,
@@ -87,17 +123,26 @@ def _predict_one(
             detail=options.detail,
             faces=options.faces,
             region=options.region,
-            capture=capture,
+            capture=known,
         )
     except NoFaceError as error:
-        report(error)
+        _report_failure(table, source.name, error)
         return _FACELESS
     try:
-        _write(source, picture, decompositions, (*notes, *told), options)
+        table.add(_write(source, picture, decompositions, (*notes, *capture_notes, *told), options))
     except InputError as error:
-        report(error)
+        _report_failure(table, source.name, error)
         return _WRITTEN_NOT
     return _READ
+
+
+def _report_failure(table: FaceTable, name: str, error: Exception) -> None:
+    """Print why a file was not read, and add it to the table."""
+    report(error)
+    try:
+        table.add_failure(name, describe(error))
+    except InputError as fault:
+        report(fault)
 
 
 def _write(
@@ -106,8 +151,12 @@ def _write(
     decompositions: Sequence[Decomposition],
     notes: Sequence[str],
     options: argparse.Namespace,
-) -> None:
-    """Write the results of a photograph under names that are free or its own, and print them."""
+) -> list[dict[str, Any]]:
+    """Write the results of a photograph under names that are free or its own, and print them.
+
+    Returns:
+        The summaries that were written.
+    """
     folder = _make_folder(options.output or source.folder / OUTPUT)
     with lock_folder(folder):
         stem = choose_result_stem(folder, source, _list_all_ends(decompositions))
@@ -124,6 +173,7 @@ def _write(
         note(sentence)
     for result in results:
         _print(source, folder, result, count, options.json)
+    return [result.summary for result in results]
 
 
 def _print(source: Source, folder: Path, result: _Result, count: int, as_json: bool) -> None:
@@ -163,10 +213,12 @@ def edit(options: argparse.Namespace) -> None:
         find_format(options.output)
     references = read_references(options, 1)
     decomposer = _make_decomposer(options)
+    capture = _make_capture(options, decomposer)
     source, picture, notes = _read(find_one(options.input))
-    capture, told = references.tell(picture)
     suffix, changes = choose_suffix(picture, "" if source.path is None else source.path.suffix)
     target = choose_edit_target(source, options.output, suffix)
+    capture, capture_notes = _complete_capture(capture, picture, options)
+    known, told = references.tell(picture, capture)
     edited = decomposer.edit_picture(
         picture,
         options.melanin,
@@ -174,11 +226,11 @@ def edit(options: argparse.Namespace) -> None:
         name=source.name,
         faces=options.faces,
         region=options.region,
-        capture=capture,
+        capture=known,
     )
     losses = write_picture(target, edited, Mark("edit", EDITED, source.digest))
     changes = () if options.output else changes
-    for sentence in (*notes, *told, *edited.notes, *changes, *losses):
+    for sentence in (*notes, *capture_notes, *told, *edited.notes, *changes, *losses):
         note(sentence)
     print_line(f"{source.name}: {target}")
 
@@ -189,7 +241,12 @@ def _read(found: Found) -> tuple[Source, Picture, tuple[str, ...]]:
         path = Path(found.path)
         picture = read_picture(path, found.path)
         return Source(found.path, path, compute_digest(path)), picture, found.notes
-    name, data = "standard input", b"" if sys.stdin is None else sys.stdin.buffer.read()
+    name, data = _name(found), b"" if sys.stdin is None else sys.stdin.buffer.read()
     notes = check_mark(read_mark(BytesIO(data)), name)
     picture = read_picture(BytesIO(data), name)
     return Source(name, None, hashlib.sha256(data).hexdigest()), picture, notes
+
+
+def _name(found: Found) -> str:
+    """The name of a picture in messages."""
+    return "standard input" if found.path == STDIN else found.path

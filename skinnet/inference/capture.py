@@ -10,9 +10,13 @@ from numpy.typing import NDArray
 from PIL import Image
 
 from skinnet.errors import InputError
+from skinnet.images._raw.cameras import find_camera, list_close_names
+from skinnet.images._raw.raw_file import FORMAT as RAW
+from skinnet.images._shot import read_shot
 from skinnet.images.photograph import read_picture
 from skinnet.images.picture import Picture
 from skinnet.images.srgb import LUMINANCE_WEIGHTS, srgb_to_linear
+from skinnet.inference._light_names import find_light
 from skinnet.inference._references.place import make_card, measure_colour
 
 _TO_CAMERA = np.array(
@@ -66,6 +70,74 @@ class Capture(NamedTuple):
     white_balance: Sequence[float] | NDArray[Any] | None = None
     linear: bool | None = None
     exposure: float | None = None
+
+    @classmethod
+    def from_names(cls, camera: str | None = None, light: str | None = None) -> "Capture":
+        """Find camera and light by their names.
+
+        Args:
+            camera: One of the 52 measured cameras, by a name that its maker or EXIF gives it, in
+                any case, such as "Nikon D700".
+            light: Daylight of a temperature (D65, D5500K, 5500K), daylight (of any temperature),
+                flash (as D5500K), tungsten (as A), or a name in `OnnxModel.lights`, such as FL2.
+
+        Returns:
+            A capture of which the coefficients of the camera, the light, and its temperature if the
+            name has one, are known.
+
+        Raises:
+            InputError: The camera is not among those measured; the nearest names are given. Or
+                daylight has no such temperature. Other lights are checked when they are used.
+
+        Example:
+            >>> from skinnet.inference import Capture
+            >>> capture = Capture.from_names("nikon d700", "D5500K")
+            >>> capture.light, capture.temperature, len(capture.camera)
+            ({'D': 1.0}, 5500.0, 6)
+        """
+        found = find_camera(camera) if camera is not None else None
+        if camera is not None and found is None:
+            raise InputError(
+                f"The camera {camera!r} is not among those whose sensitivities are measured; the "
+                f"nearest names are {', '.join(list_close_names(camera))}. Leave it out if it is "
+                "none of them."
+            )
+        name, temperature = (None, None) if light is None else find_light(light)
+        return cls(
+            light=None if name is None else {name: 1.0},
+            temperature=temperature,
+            camera=None if found is None else found.coefficients,
+        )
+
+    @classmethod
+    def from_photograph(cls, image: str | Path | Image.Image | NDArray[Any] | Picture) -> "Capture":
+        """Find what a photograph itself tells of its capture.
+
+        `Decomposer` does this for RAW files, which are developed as training does it. It does not
+        for others, since EXIF does not tell what was done to the colours after the sensor.
+
+        Args:
+            image: A photograph as for `Decomposer`.
+
+        Returns:
+            A capture whose camera is known if EXIF names one of the measured cameras, and which is
+            known to be linear if it is a RAW file.
+
+        Raises:
+            InputError: The photograph cannot be read.
+
+        Example:
+            >>> from skimage.data import astronaut
+            >>> from skinnet.inference import Capture
+            >>> Capture.from_photograph(astronaut()) == Capture()  # an array has no EXIF
+            True
+        """
+        picture = image if isinstance(image, Picture) else read_picture(image)
+        camera = find_camera(read_shot(picture.metadata.get("exif", b"")).camera or "")
+        return cls(
+            camera=None if camera is None else camera.coefficients,
+            linear=True if picture.format == RAW else None,
+        )
 
     @classmethod
     def from_white(

@@ -1,6 +1,7 @@
 """What the options --white, --chart and --capture tell of the capture of a photograph."""
 
 import argparse
+from dataclasses import replace
 from pathlib import Path
 from typing import NamedTuple
 
@@ -31,12 +32,22 @@ class References(NamedTuple):
     chart: str | None = None
     profile: CaptureProfile | None = None
 
-    def tell(self, picture: Picture) -> tuple[CaptureProfile | Capture | None, tuple[str, ...]]:
+    def tell(
+        self, picture: Picture, named: Capture
+    ) -> tuple[CaptureProfile | Capture, tuple[str, ...]]:
         """Tell what is known of a picture, and what the user should read.
 
+        Args:
+            picture: The picture.
+            named: Light and camera by their names, which come first.
+
         Raises:
-            InputError: A reference in it cannot be used.
+            InputError: A reference in the picture cannot be used.
         """
+        known, notes = self._read(picture)
+        return _adopt(known, named), notes
+
+    def _read(self, picture: Picture) -> tuple[CaptureProfile | Capture, tuple[str, ...]]:
         if self.chart is not None:
             own = CaptureProfile.from_chart(picture, self.chart)
             if self.profile is None:
@@ -44,7 +55,7 @@ class References(NamedTuple):
             notes = self.profile.compare(own.white_balance, f"The chart in {picture.name}")
             return own, notes
         if self.place is None:
-            return self.profile, ()
+            return self.profile or Capture(), ()
         if self.profile is None:
             return Capture.from_reference(picture, self.place, self.colour), ()
         return self.profile.adopt_white(picture, self.place, self.colour)
@@ -67,3 +78,18 @@ def read_references(options: argparse.Namespace, count: int) -> References:
     path: Path | None = getattr(options, "capture", None)
     profile = None if path is None else CaptureProfile.load(path)
     return References(place, card.levels or card.reflectance, options.chart, profile)
+
+
+def _adopt(known: CaptureProfile | Capture, named: Capture) -> CaptureProfile | Capture:
+    """Replace light and camera by those that are named."""
+    parts = {name: part for name, part in named._asdict().items() if part is not None}
+    if "light" in parts:
+        parts.setdefault("temperature", None)
+    if isinstance(known, Capture):
+        return known._replace(**parts)
+    linear = known.linear_capture
+    return replace(
+        known,
+        capture=known.capture._replace(**parts),
+        linear_capture=None if linear is None else linear._replace(**parts),
+    )
