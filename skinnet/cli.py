@@ -44,6 +44,7 @@ def main(argv: Sequence[str] | None = None) -> int:
     _add_predict(verbs)
     _add_edit(verbs)
     _add_person(verbs)
+    _add_capture_verb(verbs)
     for verb, help_ in PIPELINE.items():
         verbs.add_parser(verb, help=help_, add_help=False)
     arguments = list(sys.argv[1:] if argv is None else argv)
@@ -156,6 +157,48 @@ def _add_edit(verbs: "argparse._SubParsersAction[argparse.ArgumentParser]") -> N
     verb.set_defaults(run=_edit)
 
 
+def _add_capture_verb(verbs: "argparse._SubParsersAction[argparse.ArgumentParser]") -> None:
+    verb = verbs.add_parser(
+        "capture",
+        help="make a profile of a session from a picture of a colour chart or a white reference",
+    )
+    verb.add_argument("input", help="a picture of a colour chart, or of something white or grey")
+    verb.add_argument(
+        "-o",
+        "--output",
+        type=Path,
+        metavar="FILE",
+        required=True,
+        help="the profile, a .yaml file, for --capture of predict and edit",
+    )
+    _add_references(verb)
+    verb.set_defaults(run=_capture)
+
+
+def _add_references(verb: argparse.ArgumentParser) -> None:
+    """Add what a picture shows of its own light and camera."""
+    group = verb.add_argument_group("references in the picture")
+    group.add_argument(
+        "--white",
+        metavar="X,Y[,X1,Y1]",
+        help="where something white or grey is, lit as the face: a point, or a box, in pixels from "
+        "the upper left corner of the upright picture",
+    )
+    group.add_argument(
+        "--white-colour",
+        metavar="COLOUR",
+        help="what is there: the share of light that it reflects, such as 0.18 for a grey card, or "
+        "its colour in sRGB, such as 230,225,210 or #e6e1d2",
+    )
+    group.add_argument(
+        "--chart",
+        metavar="classic|FILE.csv",
+        help="a colour chart: classic for the ColorChecker Classic and Passport, or the patches of "
+        "another in a CSV file with the columns row, column, and L, a, b or wavelengths; needs the "
+        "chart extra",
+    )
+
+
 def _add_common(verb: argparse.ArgumentParser) -> None:
     verb.add_argument(
         "--model",
@@ -184,6 +227,13 @@ def _add_common(verb: argparse.ArgumentParser) -> None:
         const="skin",
         help="the same as --region skin",
     )
+    verb.add_argument(
+        "--capture",
+        type=Path,
+        metavar="FILE.yaml",
+        help="the profile of the session, which skinnet capture makes",
+    )
+    _add_references(verb)
     _add_capture(verb)
 
 
@@ -214,6 +264,13 @@ def _person(options: argparse.Namespace) -> int:
     from skinnet.inference._person_verb import person
 
     return _OK if person(options) else _BAD_INPUT
+
+
+def _capture(options: argparse.Namespace) -> int:
+    from skinnet.inference._capture_verb import capture
+
+    capture(options)
+    return _OK
 
 
 def _edit(options: argparse.Namespace) -> int:

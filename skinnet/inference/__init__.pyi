@@ -1,4 +1,5 @@
 from .capture import Capture as Capture
+from .capture_profile import CaptureProfile as CaptureProfile
 from .decomposer import Decomposer as Decomposer
 from .decomposition import Decomposition as Decomposition
 from .indices import compute_indices as compute_indices
@@ -19,6 +20,7 @@ __all__ = [
     "ONNX_FORMAT",
     "SHIPPED_ENCODER",
     "Capture",
+    "CaptureProfile",
     "Decomposer",
     "Decomposition",
     "OnnxModel",

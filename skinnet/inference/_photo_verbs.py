@@ -23,6 +23,7 @@ from skinnet.inference._face_choice import check_choice
 from skinnet.inference._face_rows import FaceTable
 from skinnet.inference._messages import describe, note, print_line, report
 from skinnet.inference._own_results import Source, choose_edit_target, choose_result_stem
+from skinnet.inference._references.options import References, read_references
 from skinnet.inference.capture import Capture
 from skinnet.inference.decomposer import Decomposer
 from skinnet.inference.decomposition import Decomposition
@@ -53,11 +54,12 @@ def predict(options: argparse.Namespace) -> bool:
     decomposer.load()
     capture = _make_capture(options, decomposer)
     found = walk(options.input, options.recursive)
+    references = read_references(options, len(found.pictures))
     table = FaceTable(options.csv)
     counts: Counter[str] = Counter()
     for picture in found.pictures:
         try:
-            counts[_predict_one(decomposer, picture, options, capture, table)] += 1
+            counts[_predict_one(decomposer, picture, options, references, capture, table)] += 1
         except BrokenPipeError:
             raise
         except (InputError, OSError) as error:
@@ -104,6 +106,7 @@ def _predict_one(
     decomposer: Decomposer,
     found: Found,
     options: argparse.Namespace,
+    references: References,
     capture: Capture,
     table: FaceTable,
 ) -> str:
@@ -112,6 +115,7 @@ def _predict_one(
         raise found.error
     source, picture, notes = _read(found)
     capture, capture_notes = _complete_capture(capture, picture, options)
+    known, told = references.tell(picture, capture)
     try:
         decompositions = decomposer(
             picture,
@@ -119,13 +123,13 @@ def _predict_one(
             detail=options.detail,
             faces=options.faces,
             region=options.region,
-            capture=capture,
+            capture=known,
         )
     except NoFaceError as error:
         _report_failure(table, source.name, error)
         return _FACELESS
     try:
-        table.add(_write(source, picture, decompositions, (*notes, *capture_notes), options))
+        table.add(_write(source, picture, decompositions, (*notes, *capture_notes, *told), options))
     except InputError as error:
         _report_failure(table, source.name, error)
         return _WRITTEN_NOT
@@ -207,12 +211,14 @@ def edit(options: argparse.Namespace) -> None:
     check_choice(options.faces)
     if options.output is not None:
         find_format(options.output)
+    references = read_references(options, 1)
     decomposer = _make_decomposer(options)
     capture = _make_capture(options, decomposer)
     source, picture, notes = _read(find_one(options.input))
     suffix, changes = choose_suffix(picture, "" if source.path is None else source.path.suffix)
     target = choose_edit_target(source, options.output, suffix)
     capture, capture_notes = _complete_capture(capture, picture, options)
+    known, told = references.tell(picture, capture)
     edited = decomposer.edit_picture(
         picture,
         options.melanin,
@@ -220,11 +226,11 @@ def edit(options: argparse.Namespace) -> None:
         name=source.name,
         faces=options.faces,
         region=options.region,
-        capture=capture,
+        capture=known,
     )
     losses = write_picture(target, edited, Mark("edit", EDITED, source.digest))
     changes = () if options.output else changes
-    for sentence in (*notes, *capture_notes, *edited.notes, *changes, *losses):
+    for sentence in (*notes, *capture_notes, *told, *edited.notes, *changes, *losses):
         note(sentence)
     print_line(f"{source.name}: {target}")
 

@@ -17,6 +17,7 @@ from skinnet.images.photograph import read_picture
 from skinnet.images.picture import Picture
 from skinnet.images.srgb import LUMINANCE_WEIGHTS, srgb_to_linear
 from skinnet.inference._light_names import find_light
+from skinnet.inference._references.place import make_card, measure_colour
 
 _TO_CAMERA = np.array(
     (
@@ -172,6 +173,76 @@ class Capture(NamedTuple):
         balance = red - green, blue - green
         _refuse_unfit(display, balance)
         return cls(white_balance=balance, exposure=_find_exposure(linear, reflectance))
+
+    @classmethod
+    def from_reference(
+        cls,
+        image: str | Path | Image.Image | NDArray[Any] | Picture,
+        place: Sequence[int],
+        colour: float | Sequence[int] | None = None,
+    ) -> "Capture":
+        """Measure something white or grey, or of a known colour, at a place of a photograph.
+
+        Args:
+            image: A photograph, as for `Decomposer`.
+            place: Where it is: (x, y), or a box (x0, y0, x1, y1), in pixels from the upper left
+                corner of the upright photograph.
+            colour: Its reflectance in [0.01, 1], or its sRGB in integers of 0 to 255, as its maker
+                states it; None for something white or grey.
+
+        Returns:
+            A capture of which the white balance is known, and the exposure if `colour` is given.
+
+        Raises:
+            InputError: The photograph cannot be read; the place is not in it; or what is there is
+                overexposed, too dark, uneven, or more coloured than a light makes of it.
+
+        Example:
+            >>> from skimage.data import astronaut
+            >>> from skinnet.inference import Capture
+            >>> capture = Capture.from_reference(astronaut(), (300, 20, 320, 40))  # the wall
+            >>> len(capture.white_balance), capture.exposure is None
+            (2, True)
+        """
+        picture = image if isinstance(image, Picture) else read_picture(image)
+        card = make_card(colour)
+        display = measure_colour(picture, tuple(place))
+        if card.colour is None:
+            return cls.from_white(display, card.reflectance)
+        linear, own = srgb_to_linear(display).astype(np.float64), np.array(card.colour)
+        red, green, blue = (
+            np.log(np.maximum(_TO_CAMERA @ linear, _LEAST)) - np.log(_TO_CAMERA @ own)
+        ).tolist()
+        balance = red - green, blue - green
+        _refuse_unfit(display, balance)
+        return cls(
+            white_balance=balance,
+            exposure=_find_exposure(linear, min(1.0, float(own @ LUMINANCE_WEIGHTS))),
+        )
+
+    @classmethod
+    def from_chart(
+        cls,
+        image: str | Path | Image.Image | NDArray[Any] | Picture,
+        chart: str | Path = "classic",
+    ) -> "Capture":
+        """Read the colour chart in a photograph.
+
+        `CaptureProfile.from_chart` finds the tone curve, too, and undoes it.
+
+        Args:
+            image: A photograph, as for `Decomposer`.
+            chart: `classic`, or a CSV file, as for `CaptureProfile.from_chart`.
+
+        Returns:
+            White balance and exposure; light and camera, too, if they are told.
+
+        Raises:
+            InputError: As `CaptureProfile.from_chart`.
+        """
+        from skinnet.inference.capture_profile import CaptureProfile
+
+        return CaptureProfile.from_chart(image, chart).capture
 
 
 def _find_exposure(linear: NDArray[np.float64], reflectance: float | None) -> float | None:

@@ -30,6 +30,7 @@ from skinnet.inference._editing import ColourChange, apply_change, compute_chang
 from skinnet.inference._face_choice import FaceChoice
 from skinnet.inference._metering import brighten, find_gain, scale_back, shift_exposure
 from skinnet.inference._onnx_pair import get_decoder_path, refuse_other_export
+from skinnet.inference._references.profile_use import Applied, apply_profile
 from skinnet.inference._skin_mask import adopt_mask, find_skin
 from skinnet.inference._subject import Region, Subject, find_subjects
 from skinnet.inference._transparency import note_transparency
@@ -148,7 +149,8 @@ class Decomposer:
                 one alone.
             region: "face", or "skin" to read whatever skin the photograph shows, such as a forearm,
                 without a search for a face.
-            capture: What is known of the light and the camera; None: nothing. Of a RAW file it is
+            capture: What is known of the light and the camera: a `Capture`, or a `CaptureProfile`
+                of the session, whose tone curve is undone; None: nothing. Of a RAW file it is
                 known, too, that it is linear, and which camera took it if that is a measured one.
 
         Returns:
@@ -167,12 +169,16 @@ class Decomposer:
             >>> [each.face_id for each in Decomposer()(astronaut(), faces="all")]
             [1]
         """
-        picture = _as_picture(image)
+        applied = apply_profile(_as_picture(image), capture)
+        picture, capture = applied.picture, applied.capture
         name = name or _name_image(image)
         known, notes = join_captures(picture, capture, self.encoder)
         picture = replace(picture, notes=(*picture.notes, *notes))
         subjects = find_subjects(picture.srgb, name, faces, "skin" if whole_image else region)
+        if applied.profile is not None:
+            subjects = [self._doubt_profile(applied, each, name, known) for each in subjects]
         read = [self._decompose(picture, subject, name, detail, known) for subject in subjects]
+        read = [applied.restore(each) for each in read]
         return read[0] if faces is None else read
 
     def edit(
@@ -270,6 +276,7 @@ class Decomposer:
         """
         factors = {"melanin": melanin, "hemoglobin": hemoglobin}
         _check_factors(**factors)
+        picture, capture, _, _ = apply_profile(picture, capture, is_read=False)
         known, capture_notes = join_captures(picture, capture, self.encoder)
         name = name or picture.name
         photo, colour = picture.srgb, picture.as_colour()
@@ -316,6 +323,15 @@ class Decomposer:
             faces_found=None if subject.faces is None else len(subject.faces),
             face_parts=None if subject.face is None else find_face_parts(photo, subject.face),
         )
+
+    def _doubt_profile(
+        self, applied: Applied, subject: Subject, name: str, known: Inputs
+    ) -> Subject:
+        """Note that a capture profile does not fit what is seen without it."""
+        linear = {key: value for key, value in known.items() if key == "known_linear"}
+        blind = self._encode(applied.picture.srgb, subject, linear)["white_balance"][0]
+        notes = applied.doubt(subject.describe(name), blind.tolist())
+        return subject._replace(notes=(*subject.notes, *notes))
 
     def _edit_in_place(
         self,
