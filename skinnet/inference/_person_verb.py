@@ -27,14 +27,12 @@ from skinnet.inference._photo_verbs import (
     _FACELESS,
     _READ,
     _READ_NOT,
-    _complete_capture,
     _describe_run,
-    _make_capture,
     _make_decomposer,
     _read,
 )
 from skinnet.inference._tiles import TILE
-from skinnet.inference.capture import Capture
+from skinnet.inference._told_capture import ToldCapture
 from skinnet.inference.decomposer import Decomposer
 from skinnet.inference.person import Person
 from skinnet.inference.results import _describe_fault, _make_folder
@@ -55,9 +53,9 @@ def person(options: argparse.Namespace) -> bool:
     _check_faces(options.faces)
     decomposer = _make_decomposer(options)
     decomposer.load()
-    capture = _make_capture(options, decomposer)
     found = walk(options.input, options.recursive)
-    read, counts = _read_shots(decomposer, found.pictures, options, capture)
+    told = ToldCapture.from_options(options, decomposer, len(found.pictures))
+    read, counts = _read_shots(decomposer, found.pictures, options, told)
     for sentence in (*found.notes, *(each for one in read for each in one.shot.notes)):
         note(sentence)
     note(_describe_run(counts, found))
@@ -80,14 +78,14 @@ def _read_shots(
     decomposer: Decomposer,
     pictures: Sequence[Found],
     options: argparse.Namespace,
-    capture: Capture,
+    told: ToldCapture,
 ) -> tuple[list[_Read], Counter[str]]:
     """Read every shot; report bad ones and continue."""
     read: dict[str, _Read] = {}
     counts: Counter[str] = Counter()
     for picture in pictures:
         try:
-            one = _read_one(decomposer, picture, options, capture)
+            one = _read_one(decomposer, picture, options, told)
             counts[_READ] += 1
         except BrokenPipeError:
             raise
@@ -102,21 +100,21 @@ def _read_shots(
 
 
 def _read_one(
-    decomposer: Decomposer, found: Found, options: argparse.Namespace, capture: Capture
+    decomposer: Decomposer, found: Found, options: argparse.Namespace, told: ToldCapture
 ) -> _Read:
     if found.error is not None:
         raise found.error
     source, picture, notes = _read(found)
-    capture, told = _complete_capture(capture, picture, options)
+    known, told_notes = told.tell(picture)
     (one,) = decomposer(
         picture,
         name=source.name,
         detail=False,
         faces="largest",
         region=options.region,
-        capture=capture,
+        capture=known,
     )
-    notes = (*notes, *told)
+    notes = (*notes, *told_notes)
     others = note_others(one.faces_found or 1, 1, source.name)
     if others:
         notes = (*notes, f"{others[0].partition(';')[0]}; the largest one is read.")

@@ -18,13 +18,11 @@ from skinnet.images._write import choose_suffix, find_format, write_picture
 from skinnet.images.faces._face_models import open_ahead
 from skinnet.images.photograph import read_picture
 from skinnet.images.picture import Picture
-from skinnet.inference._capture_inputs import make_capture_inputs
 from skinnet.inference._face_choice import check_choice
 from skinnet.inference._face_rows import FaceTable
 from skinnet.inference._messages import describe, note, print_line, report
 from skinnet.inference._own_results import Source, choose_edit_target, choose_result_stem
-from skinnet.inference._references.options import References, read_references
-from skinnet.inference.capture import Capture
+from skinnet.inference._told_capture import ToldCapture
 from skinnet.inference.decomposer import Decomposer
 from skinnet.inference.decomposition import Decomposition
 from skinnet.inference.results import (
@@ -43,23 +41,19 @@ _READ, _FACELESS, _WRITTEN_NOT, _READ_NOT = (
 )
 """What becomes of an input, as the count at the end of a run says it."""
 
-_EXIF = "exif"
-"""The value of --camera for the camera that the EXIF of each photograph names."""
-
 
 def predict(options: argparse.Namespace) -> bool:
     """Decompose every input; report bad inputs and continue. Returns whether none was bad."""
     check_choice(options.faces)
     decomposer = _make_decomposer(options)
     decomposer.load()
-    capture = _make_capture(options, decomposer)
     found = walk(options.input, options.recursive)
-    references = read_references(options, len(found.pictures))
+    told = ToldCapture.from_options(options, decomposer, len(found.pictures))
     table = FaceTable(options.csv)
     counts: Counter[str] = Counter()
     for picture in found.pictures:
         try:
-            counts[_predict_one(decomposer, picture, options, references, capture, table)] += 1
+            counts[_predict_one(decomposer, picture, options, told, table)] += 1
         except BrokenPipeError:
             raise
         except (InputError, OSError) as error:
@@ -80,42 +74,18 @@ def _make_decomposer(options: argparse.Namespace) -> Decomposer:
     return Decomposer(options.model)
 
 
-def _make_capture(options: argparse.Namespace, decomposer: Decomposer) -> Capture:
-    """What the options tell of the capture, checked before any photograph is read."""
-    camera = None if options.camera == _EXIF else options.camera
-    capture = Capture.from_names(camera, options.light)
-    if any(part is not None for part in capture):
-        make_capture_inputs(capture, decomposer.encoder)
-    return capture
-
-
-def _complete_capture(
-    capture: Capture, picture: Picture, options: argparse.Namespace
-) -> tuple[Capture, tuple[str, ...]]:
-    """Add the camera that EXIF names, if that is asked for; or a note that it names none."""
-    if options.camera != _EXIF:
-        return capture, ()
-    told = Capture.from_photograph(picture)
-    if told.camera is None:
-        note = "EXIF names no camera whose sensitivities are measured; it is read without."
-        return capture, (f"{picture.name}: {note}",)
-    return capture._replace(camera=told.camera), ()
-
-
 def _predict_one(
     decomposer: Decomposer,
     found: Found,
     options: argparse.Namespace,
-    references: References,
-    capture: Capture,
+    told: ToldCapture,
     table: FaceTable,
 ) -> str:
     """Decompose a picture, and write its results. Returns under what it is counted."""
     if found.error is not None:
         raise found.error
     source, picture, notes = _read(found)
-    capture, capture_notes = _complete_capture(capture, picture, options)
-    known, told = references.tell(picture, capture)
+    known, told_notes = told.tell(picture)
     try:
         decompositions = decomposer(
             picture,
@@ -129,7 +99,7 @@ def _predict_one(
         _report_failure(table, source.name, error)
         return _FACELESS
     try:
-        table.add(_write(source, picture, decompositions, (*notes, *capture_notes, *told), options))
+        table.add(_write(source, picture, decompositions, (*notes, *told_notes), options))
     except InputError as error:
         _report_failure(table, source.name, error)
         return _WRITTEN_NOT
@@ -211,14 +181,12 @@ def edit(options: argparse.Namespace) -> None:
     check_choice(options.faces)
     if options.output is not None:
         find_format(options.output)
-    references = read_references(options, 1)
     decomposer = _make_decomposer(options)
-    capture = _make_capture(options, decomposer)
+    told = ToldCapture.from_options(options, decomposer, 1)
     source, picture, notes = _read(find_one(options.input))
     suffix, changes = choose_suffix(picture, "" if source.path is None else source.path.suffix)
     target = choose_edit_target(source, options.output, suffix)
-    capture, capture_notes = _complete_capture(capture, picture, options)
-    known, told = references.tell(picture, capture)
+    known, told_notes = told.tell(picture)
     edited = decomposer.edit_picture(
         picture,
         options.melanin,
@@ -230,7 +198,7 @@ def edit(options: argparse.Namespace) -> None:
     )
     losses = write_picture(target, edited, Mark("edit", EDITED, source.digest))
     changes = () if options.output else changes
-    for sentence in (*notes, *capture_notes, *told, *edited.notes, *changes, *losses):
+    for sentence in (*notes, *told_notes, *edited.notes, *changes, *losses):
         note(sentence)
     print_line(f"{source.name}: {target}")
 
