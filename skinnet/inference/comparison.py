@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from PIL import Image
 
 from skinnet._version import __version__
-from skinnet.errors import InputError
+from skinnet.errors import InputError, NoFaceError
 from skinnet.images.box import Box
 from skinnet.images.faces._outlines import Patch
 from skinnet.images.photograph import read_picture
@@ -24,7 +24,7 @@ from skinnet.inference._comparison.change_maps import (
     spread_changes,
     warp_photograph,
 )
-from skinnet.inference._comparison.changes import PigmentChanges
+from skinnet.inference._comparison.changes import PigmentChanges, RegionChanges
 from skinnet.inference._comparison.colour_derivatives import differentiate_chroma, tabulate_daylight
 from skinnet.inference._comparison.estimate import Estimate, Reading, estimate_changes
 from skinnet.inference._comparison.face_warp import FaceWarp
@@ -51,7 +51,9 @@ class Comparison:
     Attributes:
         face: Changes of `melanin` and `hemoglobin` over the skin that both photographs show, each
             with `log`, `sd`, 90 % `interval`, `percent` and `unchanged`; and `unchanged` for both.
-        regions: The same of the regions of the face; None where too little is seen in both.
+        regions: Of each region of the face the same as `total`, and `against_rest`: by how much
+            more than other skin it has changed, which is known better. None where too little of it
+            is seen in both.
         melanin: Map of the log change of melanin, float32 [h, w]; NaN where there is none.
         hemoglobin: The same of hemoglobin.
         before: The part of the first photograph that the maps show, uint8 sRGB [h, w, 3].
@@ -75,7 +77,7 @@ class Comparison:
     """
 
     face: PigmentChanges
-    regions: Mapping[str, PigmentChanges | None]
+    regions: Mapping[str, RegionChanges | None]
     melanin: NDArray[np.float32]
     hemoglobin: NDArray[np.float32]
     before: NDArray[np.uint8]
@@ -109,7 +111,8 @@ class Comparison:
         Returns:
             `before` and `after` (names), `level` of the intervals, `face` and `regions` (of each
             `melanin` and `hemoglobin` with `log`, `sd`, `interval`, `percent`, `percent_interval`
-            and `unchanged`, and `unchanged` for both; None as in `regions`), `light` (log changes
+            and `unchanged`, and `unchanged` for both; of regions also `against_rest`; None as in
+            `regions`), `light` (log changes
             `r_over_g` and `b_over_g`), `other_cells`, `box`, `notes`, `version` and `model`.
         """
         regions = self.regions.items()
@@ -170,19 +173,29 @@ def compare_photographs(
         >>> decomposer = Decomposer(threads=1)
         >>> flushed = decomposer.edit(astronaut(), hemoglobin=2.0)
         >>> compared = compare_photographs(astronaut(), flushed, decomposer=decomposer)
-        >>> compared.face.hemoglobin.log > 0.2
+        >>> compared.face.hemoglobin.log > 0
         True
     """
     decomposer = decomposer or Decomposer()
     pictures = [one if isinstance(one, Picture) else read_picture(one) for one in (before, after)]
     names = names or _name(before, after)
-    read = [
-        decomposer(picture, name=name, detail=False, capture=capture)
-        for picture, name, capture in zip(
-            pictures, names, (before_capture, after_capture), strict=True
-        )
-    ]
-    return _compare(decomposer, (pictures[0].srgb, pictures[1].srgb), (read[0], read[1]), names)
+    first = _read(decomposer, pictures[0], names[0], before_capture)
+    second = _read(decomposer, pictures[1], names[1], after_capture)
+    return _compare(decomposer, (pictures[0].srgb, pictures[1].srgb), (first, second), names)
+
+
+def _read(
+    decomposer: Decomposer, picture: Picture, name: str, capture: CaptureLike | None
+) -> Decomposition:
+    try:
+        read = decomposer(picture, name=name, detail=False, capture=capture)
+    except NoFaceError as error:
+        raise NoFaceError(
+            f"No face was found in {name}; a comparison needs the same face in both photographs."
+        ) from error
+    if not read.means:
+        raise InputError(f"No skin was found in {name}; give a photograph with an uncovered face.")
+    return read
 
 
 def _compare(
@@ -196,7 +209,7 @@ def _compare(
     cells = sample_cells(photos, read, warp)
     _refuse_little_skin(cells, names)
     estimate = _estimate(decomposer, cells, read)
-    face = _summarise(estimate, np.ones(cells.skin.sum(), bool))
+    face = PigmentChanges.from_moments(*estimate.average(np.ones(cells.skin.sum(), bool)))
     _refuse_other_person(face, names)
     canvas = Canvas.around(read[0].box)
     melanin, hemoglobin = spread_changes(estimate.change, cells, read[0], canvas)
@@ -227,19 +240,22 @@ def _estimate(
     return estimate_changes(cells, derivatives, Reading(second - first, sds))
 
 
-def _summarise(estimate: Estimate, chosen: NDArray[np.bool_]) -> PigmentChanges:
-    return PigmentChanges.from_moments(*estimate.average(chosen))
+def _summarise_region(estimate: Estimate, chosen: NDArray[np.bool_]) -> RegionChanges:
+    return RegionChanges(
+        PigmentChanges.from_moments(*estimate.average(chosen)),
+        PigmentChanges.from_moments(*estimate.contrast(chosen)),
+    )
 
 
 def _summarise_regions(
     estimate: Estimate, cells: Cells, read: Decomposition
-) -> dict[str, PigmentChanges | None]:
+) -> dict[str, RegionChanges | None]:
     parts = {} if read.face_parts is None else read.face_parts.regions
-    centres, found = cells.centres[cells.skin], dict[str, PigmentChanges | None]()
+    centres, found = cells.centres[cells.skin], dict[str, RegionChanges | None]()
     for name, region in parts.items():
         chosen = _find_inside(region.patch, centres)
         enough = chosen.sum() >= _LEAST_REGION
-        found[name] = _summarise(estimate, chosen) if enough else None
+        found[name] = _summarise_region(estimate, chosen) if enough else None
     return found
 
 
@@ -258,8 +274,8 @@ def _refuse_little_skin(cells: Cells, names: tuple[str, str]) -> None:
     if count < _LEAST_CELLS:
         raise InputError(
             f"Too little skin is seen in both {names[0]} and {names[1]}: {count} cells of the "
-            f"face, and {_LEAST_CELLS} are needed. Use photographs that are neither overexposed nor "
-            "dark, with the face uncovered."
+            f"face, and {_LEAST_CELLS} are needed. Use photographs that are neither overexposed "
+            "nor dark, with the face uncovered."
         )
 
 

@@ -230,9 +230,7 @@ def _average(grid: _Grid, samples: NDArray[np.float64], match: NDArray[np.float6
     )
 
 
-def _measure_spread(
-    linear: NDArray[np.float64], pixels: NDArray[np.bool_]
-) -> NDArray[np.float64]:
+def _measure_spread(linear: NDArray[np.float64], pixels: NDArray[np.bool_]) -> NDArray[np.float64]:
     """Standard deviation of the difference of chroma over the pixels [N, samples] of each cell."""
     logs = np.log(np.maximum(linear, 0) + _BLACK)
     difference = logs[:, 1] - logs[:, 0]

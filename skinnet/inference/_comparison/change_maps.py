@@ -10,6 +10,7 @@ from skinnet.images.box import Box
 from skinnet.images.resizing import resize
 from skinnet.inference._comparison.cells import Cells
 from skinnet.inference._comparison.face_warp import FaceWarp, sample_at
+from skinnet.inference._tiles import BLANK
 from skinnet.inference.decomposition import SKIN_THRESHOLD, Decomposition
 
 _LARGEST = 512
@@ -45,14 +46,16 @@ def cut(photo: NDArray[np.uint8], canvas: Canvas) -> NDArray[np.uint8]:
 def warp_photograph(
     photo: NDArray[np.uint8], box: Box, warp: FaceWarp, canvas: Canvas
 ) -> NDArray[np.uint8]:
-    """Warp the second photograph, of which a box was read, onto a canvas; black is outside."""
+    """Warp the second photograph, of which a box was read, onto a canvas; grey is outside."""
     scale = min(1.0, _LARGEST / max(box.width, box.height))
     size = [max(1, round(side * scale)) for side in (box.width, box.height)]
     small = resize(photo[box.slices], *size).astype(np.float32)
     ratio = np.array(size) / (box.width, box.height)
-    sampled = sample_at(small, (warp.map(canvas.points) - (box.left, box.top)) * ratio)
-    warped: NDArray[np.uint8] = np.rint(np.nan_to_num(sampled)).astype(np.uint8)
-    return warped
+    padded = np.pad(small, ((1, 1), (1, 1), (0, 0)), "edge")
+    sampled = sample_at(padded, (warp.map(canvas.points) - (box.left, box.top)) * ratio + 1)
+    warped = np.where(np.isnan(sampled), np.array(BLANK, np.float32), sampled)
+    pixels: NDArray[np.uint8] = np.rint(warped).astype(np.uint8)
+    return pixels
 
 
 def spread_changes(

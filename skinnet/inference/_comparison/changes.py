@@ -89,6 +89,23 @@ class PigmentChanges(NamedTuple):
         }
 
 
+class RegionChanges(NamedTuple):
+    """The changes in a region of the face.
+
+    Attributes:
+        total: Changes of its pigments. They are as uncertain as those of the face.
+        against_rest: By how much more its pigments have changed than those of all other skin that
+            is compared; light and camera matter little to it.
+    """
+
+    total: PigmentChanges
+    against_rest: PigmentChanges
+
+    def to_json(self) -> dict[str, Any]:
+        """The same as numbers for JSON."""
+        return self.total.to_json() | {"against_rest": self.against_rest.to_json()}
+
+
 def to_percent(log: float) -> float:
     """The change in percent of a log factor."""
     return 100 * math.expm1(log)

@@ -165,9 +165,7 @@ def estimate_changes(cells: Cells, derivatives: Array, reading: Reading) -> Esti
     return Estimate(solution.change(), solution.mean[2:4], len(others), conflict, solution)
 
 
-def _contradicts(
-    solution: _Solution, cells: Cells, derivatives: Array, reading: Reading
-) -> bool:
+def _contradicts(solution: _Solution, cells: Cells, derivatives: Array, reading: Reading) -> bool:
     """Whether what is not skin moves the change further than its uncertainty allows."""
     alone = _build(cells, np.empty(0, np.intp), derivatives, reading)
     moved = solution.mean[:2] - alone.prior_mean[:2]
@@ -181,9 +179,7 @@ def _choose_others(cells: Cells) -> NDArray[np.intp]:
     return found[:: 1 + len(found) // _MOST_OTHER]
 
 
-def _build(
-    cells: Cells, others: NDArray[np.intp], derivatives: Array, reading: Reading
-) -> _System:
+def _build(cells: Cells, others: NDArray[np.intp], derivatives: Array, reading: Reading) -> _System:
     inside = np.flatnonzero(cells.skin)
     chosen, count = np.concatenate([inside, others]), len(inside)
     colour, place = cells.colour[chosen], cells.place[chosen]

@@ -11,7 +11,7 @@ from scipy.interpolate import LinearNDInterpolator
 from skinnet.errors import InputError
 from skinnet.images.faces._face_mesh import MESH_POINTS
 
-_FAR = 4.0
+_FAR = 10.0
 """Distance of the corners around the mesh, in its own sides, where the warp is the affine one."""
 
 _MOST_BENT = 0.05

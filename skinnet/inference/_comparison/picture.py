@@ -14,7 +14,7 @@ _BLUE_WHITE_RED = (
     (244, 205, 186), (226, 140, 115), (183, 62, 61), (112, 10, 32),
 )  # fmt: skip
 
-_FACTORS = (1 / 3, 1 / 2, 1 / 1.4, 1.0, 1.4, 2.0, 3.0)
+_FACTORS = (1 / 4, 1 / 2, 1.0, 2.0, 4.0)
 """Factors that are labelled; the scale is linear in their logarithms."""
 
 
@@ -27,7 +27,7 @@ class ChangeScale(Scale):
 
     def label(self) -> list[tuple[str, float]]:
         """List the labels, in percent, and their places along the scale."""
-        names = [f"{to_percent(math.log(factor)):+.0f}".replace("+0", "0") for factor in _FACTORS]
+        names = [f"{100 * (factor - 1):+.0f}" if factor != 1 else "0" for factor in _FACTORS]
         names[-1] += f" {self.symbol}"
         places = self.place(np.log(_FACTORS))
         return list(zip(names, places.tolist(), strict=True))
