@@ -222,6 +222,14 @@ def _add_compare(verbs: "argparse._SubParsersAction[argparse.ArgumentParser]") -
         metavar="FILE",
         help="encoder, X.onnx, with X.decoder.onnx in the same folder; by default the shipped one",
     )
+    verb.add_argument(
+        "--capture",
+        type=Path,
+        metavar="FILE.yaml",
+        help="the profile of the session of both, which skinnet capture makes",
+    )
+    _add_references(verb)
+    _add_capture(verb)
     verb.set_defaults(run=_compare)
 
 

@@ -16,6 +16,7 @@ from skinnet.inference._comparison.picture import describe_change
 from skinnet.inference._messages import note, print_line
 from skinnet.inference._own_results import Source
 from skinnet.inference._photo_verbs import _read
+from skinnet.inference._told_capture import ToldCapture
 from skinnet.inference._uncertainty import PIGMENTS
 from skinnet.inference.comparison import Comparison, compare_photographs
 from skinnet.inference.decomposer import Decomposer
@@ -32,12 +33,20 @@ def compare(options: argparse.Namespace) -> None:
     open_ahead()
     decomposer = Decomposer(options.model)
     decomposer.load()
+    told = ToldCapture.from_options(options, decomposer, 2)
     read = [_read(find_one(path)) for path in (options.before, options.after)]
     (before, first, _), (after, second, _) = read
+    (known, first_notes), (other_known, second_notes) = told.tell(first), told.tell(second)
     found = compare_photographs(
-        first, second, decomposer=decomposer, names=(before.name, after.name)
+        first,
+        second,
+        decomposer=decomposer,
+        before_capture=known,
+        after_capture=other_known,
+        names=(before.name, after.name),
     )
-    notes = [*(each for _, _, notes in read for each in notes), *found.notes]
+    notes = [each for _, _, notes in read for each in notes]
+    notes += [*first_notes, *second_notes, *found.notes]
     folder = _make_folder(options.output or before.folder / OUTPUT)
     stem, summary = _write(folder, (before, after), found, notes)
     for sentence in summary["notes"]:

@@ -29,6 +29,7 @@ from skinnet.inference._comparison.colour_derivatives import differentiate_chrom
 from skinnet.inference._comparison.estimate import Estimate, Reading, estimate_changes
 from skinnet.inference._comparison.face_warp import FaceWarp
 from skinnet.inference._comparison.picture import describe_change, draw_comparison
+from skinnet.inference._face_choice import note_others
 from skinnet.inference._uncertainty import LEVEL, PIGMENTS
 from skinnet.inference.decomposer import Decomposer
 from skinnet.inference.decomposition import Decomposition
@@ -154,7 +155,8 @@ def compare_photographs(
         before: A photograph as for `Decomposer`; of several faces the largest is compared.
         after: Another one of the same person, from the same side.
         decomposer: What reads them; None for the shipped model.
-        before_capture: What is known of the light and camera of the first; None: nothing.
+        before_capture: What is known of the light and camera of the first, as for `Decomposer`;
+            None: nothing.
         after_capture: The same of the second.
         names: Names of both in messages; the paths by default.
 
@@ -296,8 +298,11 @@ def _list_notes(
 ) -> tuple[str, ...]:
     notes = [note for one in read for note in one.notes]
     for one, name in zip(read, names, strict=True):
-        if (one.faces_found or 0) > 1:
-            notes.append(f"{name} shows {one.faces_found} faces; the largest is compared.")
+        count = one.faces_found or 1
+        if count > 1:
+            # It replaces the note on --faces, which this verb does not have.
+            notes = [note for note in notes if note not in note_others(count, 1, name)]
+            notes.append(f"{name} shows {count} faces; the largest is compared.")
     if estimate.conflict:
         notes.append(
             "Clothes or background contradict what the skin tells of the change of light; they "

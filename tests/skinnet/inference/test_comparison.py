@@ -126,8 +126,8 @@ def test_the_command_writes_a_picture_and_a_summary(
     before, after = tmp_path / "before.png", tmp_path / "after.png"
     Image.fromarray(astronaut).save(before)
     Image.fromarray(relight(astronaut)).save(after)
-    for _ in range(2):  # its own results are replaced
-        assert main(["compare", str(before), str(after), "--json"]) == 0
+    for options in ([], ["--light", "D65"]):  # its own results are replaced
+        assert main(["compare", str(before), str(after), "--json", *options]) == 0
         summary = json.loads(capsys.readouterr().out)
         assert summary["face"]["unchanged"]
     folder = tmp_path / "skinmaps"
@@ -151,5 +151,7 @@ def test_the_command_reports_bad_input_and_writes_nothing(
     assert main(["compare", str(before), str(wall)]) == 2
     assert "wall.png" in capsys.readouterr().err
     assert main(["compare", "-", "-"]) == 2
+    assert main(["compare", str(before), str(before), "--white", "3,4"]) == 2
+    assert "one picture" in capsys.readouterr().err
     assert main(["compare", str(before), str(tmp_path / "absent.png")]) == 2
     assert sorted(path.name for path in tmp_path.iterdir()) == ["before.png", "wall.png"]
