@@ -47,8 +47,8 @@ class Cells(NamedTuple):
     """Cells of a regular grid on the first photograph, those that can be compared.
 
     Attributes:
-        index: Row and column in the grid, int [N, 2].
-        count: Rows, and columns, of the grid.
+        addresses: Row and column in the grid, int [N, 2].
+        grid_size: Rows, and columns, of the grid.
         corner: Column and row of the grid's corner in the first photograph, in pixels [2].
         side: Side of a cell in pixels of the first photograph.
         place: Distances from the middle of the face, right and down, in its lengths, [N, 2].
@@ -60,8 +60,8 @@ class Cells(NamedTuple):
         matches: Whether a cell is not skin, and the same thing in both photographs, bool [N].
     """
 
-    index: NDArray[np.intp]
-    count: int
+    addresses: NDArray[np.intp]
+    grid_size: int
     corner: NDArray[np.float64]
     side: float
     place: NDArray[np.float64]
@@ -75,7 +75,7 @@ class Cells(NamedTuple):
     @property
     def centres(self) -> NDArray[np.float64]:
         """Columns and rows of the centres in the first photograph, in pixels, [N, 2]."""
-        centres: NDArray[np.float64] = (self.index[:, ::-1] + 0.5) * self.side + self.corner
+        centres: NDArray[np.float64] = (self.addresses[:, ::-1] + 0.5) * self.side + self.corner
         return centres
 
 
@@ -87,19 +87,21 @@ class _Grid(NamedTuple):
     side: float
 
     @property
-    def count(self) -> int:
+    def grid_size(self) -> int:
         return round(2 * _REACH * _CELLS)
 
     @property
     def points(self) -> NDArray[np.float64]:
         """Columns and rows [h, w, 2]."""
-        steps = (np.arange(self.count * _SAMPLES) + 0.5) * self.side / _SAMPLES
+        steps = (np.arange(self.grid_size * _SAMPLES) + 0.5) * self.side / _SAMPLES
         return np.stack(np.meshgrid(*(start + steps for start in self.corner)), -1)
 
     def split(self, samples: NDArray[np.floating]) -> NDArray[np.float64]:
         """Samples [h, w, channels] of each cell, [cells, samples, channels]."""
-        parts = samples.reshape(self.count, _SAMPLES, self.count, _SAMPLES, -1).swapaxes(1, 2)
-        return parts.reshape(self.count**2, _SAMPLES**2, -1).astype(np.float64)
+        parts = samples.reshape(self.grid_size, _SAMPLES, self.grid_size, _SAMPLES, -1).swapaxes(
+            1, 2
+        )
+        return parts.reshape(self.grid_size**2, _SAMPLES**2, -1).astype(np.float64)
 
 
 class _Sheet(NamedTuple):
@@ -212,12 +214,12 @@ def _average(grid: _Grid, samples: NDArray[np.float64], match: NDArray[np.float6
     means = values.sum(2) / pixels.sum(-1)[:, None, None]
     maps = np.maximum(means[..., _MASK + 1 :], 1e-4)
     colour = np.log(np.maximum(means[..., :3], 0) + _BLACK)
-    index = np.stack(np.unravel_index(kept, (grid.count, grid.count)), -1)
+    index = np.stack(np.unravel_index(kept, (grid.grid_size, grid.grid_size)), -1)
     centres = (index[:, ::-1] + 0.5) * grid.side + grid.corner
     alike = grid.split(match[..., None])[kept].mean((1, 2)) > _SAME
     return Cells(
         index,
-        grid.count,
+        grid.grid_size,
         grid.corner,
         grid.side,
         (centres - grid.middle) / (grid.side * _CELLS),

@@ -66,8 +66,8 @@ def spread_changes(
     Returns:
         [pigments, h, w]; NaN where there is no skin that was compared.
     """
-    skin = cells.index[cells.skin]
-    filled = np.zeros((cells.count, cells.count), bool)
+    skin = cells.addresses[cells.skin]
+    filled = np.zeros((cells.grid_size, cells.grid_size), bool)
     filled[tuple(skin.T)] = True
     nearest = ndimage.distance_transform_edt(~filled, return_distances=False, return_indices=True)
     at = np.moveaxis((canvas.points - cells.corner) / cells.side - 0.5, -1, 0)[::-1]
@@ -75,7 +75,7 @@ def spread_changes(
     mask = resize(decomposition.mask[canvas.box.slices], canvas.width, canvas.height)
     shown, maps = near & (mask > SKIN_THRESHOLD), []
     for values in change.T:
-        grid = np.zeros((cells.count, cells.count))
+        grid = np.zeros((cells.grid_size, cells.grid_size))
         grid[tuple(skin.T)] = values
         spread = ndimage.map_coordinates(grid[tuple(nearest)], at, order=1, mode="nearest")
         maps.append(np.where(shown, spread, np.nan))

@@ -277,8 +277,8 @@ def _find_scale(rest: Array, variance: Array, place: Array, scale: Array) -> Arr
     """Factors of local changes: larger where neighbours together leave more than expected."""
     near = _correlate(place, _NEAR)
     smooth = near @ rest / near.sum(-1, keepdims=True)
-    found: Array = scale * np.maximum(_weigh(smooth, variance), 1e-3) ** -0.5
-    return found.clip(1, _LARGEST_FACTOR)
+    found: Array = np.maximum(_weigh(smooth, variance), 1e-3) ** -0.5
+    return np.clip(scale * found, 1.0, _LARGEST_FACTOR)
 
 
 def _cross(system: _System, kernel: Array) -> Array:
@@ -295,7 +295,7 @@ def _share_noise(system: _System) -> Array:
     sds = np.where(skin, _SHARED, _SHARED_OTHER)
     alike = skin[:, None] == skin[None]
     near = np.where(alike, np.outer(sds, sds) * _correlate(system.place, _SHARED_FAR), 0)
-    return np.kron(near, np.eye(2))
+    return np.asarray(np.kron(near, np.eye(2)), np.float64)
 
 
 def _spread_local(system: _System, kernel: Array) -> Array:
