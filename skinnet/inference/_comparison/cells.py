@@ -98,9 +98,8 @@ class _Grid(NamedTuple):
 
     def split(self, samples: NDArray[np.floating]) -> NDArray[np.float64]:
         """Samples [h, w, channels] of each cell, [cells, samples, channels]."""
-        parts = samples.reshape(self.grid_size, _SAMPLES, self.grid_size, _SAMPLES, -1).swapaxes(
-            1, 2
-        )
+        sides = (self.grid_size, _SAMPLES)
+        parts = samples.reshape(*sides, *sides, -1).swapaxes(1, 2)
         return parts.reshape(self.grid_size**2, _SAMPLES**2, -1).astype(np.float64)
 
 
