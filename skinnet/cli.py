@@ -44,6 +44,7 @@ def main(argv: Sequence[str] | None = None) -> int:
     _add_predict(verbs)
     _add_edit(verbs)
     _add_person(verbs)
+    _add_compare(verbs)
     _add_capture_verb(verbs)
     for verb, help_ in PIPELINE.items():
         verbs.add_parser(verb, help=help_, add_help=False)
@@ -199,6 +200,39 @@ def _add_references(verb: argparse.ArgumentParser) -> None:
     )
 
 
+def _add_compare(verbs: "argparse._SubParsersAction[argparse.ArgumentParser]") -> None:
+    verb = verbs.add_parser(
+        "compare", help="find how melanin and hemoglobin of a face differ in two photographs"
+    )
+    verb.add_argument("before", help="a photograph, or - for standard input")
+    verb.add_argument("after", help="another one of the same face, from the same side")
+    verb.add_argument(
+        "-o",
+        "--output",
+        type=Path,
+        metavar="DIR",
+        help="folder to write to; by default skinmaps in the folder of the first photograph",
+    )
+    verb.add_argument(
+        "--json", action="store_true", help="print the summary as one line of JSON, nothing else"
+    )
+    verb.add_argument(
+        "--model",
+        type=Path,
+        metavar="FILE",
+        help="encoder, X.onnx, with X.decoder.onnx in the same folder; by default the shipped one",
+    )
+    verb.add_argument(
+        "--capture",
+        type=Path,
+        metavar="FILE.yaml",
+        help="the profile of the session of both, which skinnet capture makes",
+    )
+    _add_references(verb)
+    _add_capture(verb)
+    verb.set_defaults(run=_compare)
+
+
 def _add_common(verb: argparse.ArgumentParser) -> None:
     verb.add_argument(
         "--model",
@@ -277,4 +311,11 @@ def _edit(options: argparse.Namespace) -> int:
     from skinnet.inference._photo_verbs import edit
 
     edit(options)
+    return _OK
+
+
+def _compare(options: argparse.Namespace) -> int:
+    from skinnet.inference._compare_verb import compare
+
+    compare(options)
     return _OK

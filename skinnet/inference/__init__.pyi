@@ -1,5 +1,7 @@
 from .capture import Capture as Capture
 from .capture_profile import CaptureProfile as CaptureProfile
+from .comparison import Comparison as Comparison
+from .comparison import compare_photographs as compare_photographs
 from .decomposer import Decomposer as Decomposer
 from .decomposition import Decomposition as Decomposition
 from .indices import compute_indices as compute_indices
@@ -21,11 +23,13 @@ __all__ = [
     "SHIPPED_ENCODER",
     "Capture",
     "CaptureProfile",
+    "Comparison",
     "Decomposer",
     "Decomposition",
     "OnnxModel",
     "OutputInfo",
     "Person",
+    "compare_photographs",
     "compute_indices",
     "draw_panel",
     "open_model",
