@@ -27,6 +27,8 @@ def pictures(tmp_path_factory: pytest.TempPathFactory) -> Path:
     """A photograph with a grey card, a chart, a RAW file, and shots in several lights."""
     folder = tmp_path_factory.mktemp("guide")
     photo = astronaut()
+    Image.fromarray(photo).save(folder / "before.jpg", quality=95)
+    Image.fromarray(np.ascontiguousarray(photo[:, 4:])).save(folder / "after.jpg", quality=95)
     photo[50:100, 390:450] = 180
     Image.fromarray(photo).save(folder / "photo.jpg", quality=95)
     view = View("D55", 3, tilt=20, axis=40, roll=8, exposure=0.55, contrast=0.14, bend=0.5)
@@ -58,7 +60,7 @@ def test_python_runs(code: str) -> None:
 @pytest.mark.slow
 def test_commands_run() -> None:
     commands = [line for block in blocks("sh") for line in block.splitlines()]
-    assert len(commands) == 12
+    assert len(commands) == 13
     for command in commands:
         words = shlex.split(command, comments=True)
         # The photograph shows no chart; the picture of one shows no face.
