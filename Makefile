@@ -53,6 +53,8 @@ bench: $(READY)
 	$(BIN)/python -m benchmarks.encoder
 	$(BIN)/python -m benchmarks.constancy
 	$(BIN)/python -m benchmarks.identifiability
+	$(BIN)/python -m benchmarks.charts
+	$(BIN)/python -m benchmarks.indices
 
 wheel: $(READY)
 	$(BIN)/python -m build --wheel

@@ -13,6 +13,9 @@ from benchmarks.reader import NetworkReader
 from benchmarks.repeated_faces import RepeatedFaces, Shot, render_changed, render_people
 from benchmarks.report import Results
 from benchmarks.skin_readings import SkinReading, read_skin, stack_readings
+from skinnet.inference._agreement import find_sessions
+from skinnet.inference._fusion import SHARED, Fusion, fuse_readings
+from skinnet.inference._uncertainty import LEVEL, find_factor
 
 
 def measure_people(
@@ -23,24 +26,48 @@ def measure_people(
     truths, described = [], []
     for shots in render_people(settings):
         truths.append(shots[0].truth)
-        described.append(describe_shots(shots[:2]))
+        described.append(describe_shots(shots))
         for name, reader in readers.items():
             readings[name].append(read_shots(shots, reader))
-    truth = np.stack(truths)
+    truth, colours = np.stack(truths), np.stack(described)
     scores = {
-        name: _score(stack_readings(readings[name]), truth, reader)
+        name: _score(stack_readings(readings[name]), colours, truth, reader)
         for name, reader in readers.items()
     }
-    return scores, measure_spreads(np.stack(described))
+    return scores, measure_spreads(colours[:, :2])
 
 
-def _score(reading: SkinReading, truth: NDArray[np.floating], reader: NetworkReader) -> Results:
+def _score(
+    reading: SkinReading,
+    colours: NDArray[np.floating],
+    truth: NDArray[np.floating],
+    reader: NetworkReader,
+) -> Results:
     first = SkinReading(reading.pigments[:, :2], reading.sd[:, :2], {})
     return {
         "pairs": score_reading(first, reader.model.decoder),
         "single": correlate(reading.pigments[:, 0], truth),
-        f"fused{reading.sd.shape[1]}": correlate(fuse(reading), truth),
+        f"fused{reading.sd.shape[1]}": score_fused(reading, colours[..., :2], truth),
     }
+
+
+def score_fused(
+    reading: SkinReading, colours: NDArray[np.floating], truth: NDArray[np.floating]
+) -> Results:
+    """Score people that are fused as `skinnet person` does, and how far their shots err alike.
+
+    Args:
+        reading: Readings [people, shots, 2].
+        colours: Log R/G and log B/G of the skin in the photographs, [people, shots, 2].
+        truth: Natural logarithms of the true fractions, [people, 2].
+    """
+    people = fuse_people(reading, colours)
+    found = correlate(np.stack([fused.value for fused in people], -1), truth)
+    for index, (name, fused) in enumerate(zip(PIGMENTS, people, strict=True)):
+        shots = reading.pigments[..., index], reading.sd[..., index]
+        found[name]["coverage"] = measure_coverage(fused, truth[:, index])
+        found[name]["error_correlation"] = correlate_errors(*shots, truth[:, index])
+    return found
 
 
 def measure_changes(
@@ -70,8 +97,49 @@ def read_shots(shots: Sequence[Shot], reader: NetworkReader, told: bool = False)
 
 def fuse(reading: SkinReading) -> NDArray[np.float64]:
     """Fuse the readings [..., shots, 2] of each person, by their inverse variances, to [..., 2]."""
-    weight = np.where(np.isfinite(reading.pigments), reading.sd**-2.0, 0)
-    return (weight * np.nan_to_num(reading.pigments)).sum(-2) / weight.sum(-2)
+    return fuse_readings(reading.pigments.swapaxes(-1, -2), reading.sd.swapaxes(-1, -2)).value
+
+
+def fuse_people(reading: SkinReading, colours: NDArray[np.floating]) -> tuple[Fusion, Fusion]:
+    """Fuse the readings of people as `skinnet person` does.
+
+    Args:
+        reading: Readings [people, shots, 2].
+        colours: Log R/G and log B/G of the skin in the photographs, [people, shots, 2].
+
+    Returns:
+        Of melanin and of hemoglobin, [people] each.
+    """
+    sessions = np.stack([find_sessions(shots) for shots in colours])
+    melanin, hemoglobin = (
+        fuse_readings(reading.pigments[..., index], reading.sd[..., index], SHARED[name], sessions)
+        for index, name in enumerate(PIGMENTS)
+    )
+    return melanin, hemoglobin
+
+
+def measure_coverage(fused: Fusion, log_truth: NDArray[np.floating]) -> float:
+    """Measure which share of the intervals of people [people] hold the truth."""
+    seen = np.isfinite(fused.value) & np.isfinite(log_truth)
+    widths = np.array([np.log(find_factor(sd, LEVEL)) for sd in fused.sd[seen].tolist()])
+    return float((np.abs(fused.value - log_truth)[seen] <= widths).mean())
+
+
+def correlate_errors(
+    log_read: NDArray[np.floating], sd: NDArray[np.floating], log_truth: NDArray[np.floating]
+) -> float:
+    """Correlate the errors of two shots of a person, each in the shot's standard deviations.
+
+    Args:
+        log_read: A pigment in each shot, [people, shots].
+        sd: The standard deviations that the shots state, [people, shots].
+        log_truth: The true one, [people].
+    """
+    errors = (log_read - log_truth[:, None]) / sd
+    errors = errors[np.isfinite(errors).all(1)]
+    shots = errors.shape[1]
+    pairs = (errors.sum(1) ** 2 - (errors**2).sum(1)).mean() / (shots * (shots - 1))
+    return float(pairs / (errors**2).mean())
 
 
 def correlate(log_read: NDArray[np.floating], log_truth: NDArray[np.floating]) -> Results:

@@ -43,6 +43,9 @@ def main(argv: Sequence[str] | None = None) -> int:
     verbs = parser.add_subparsers(title="verbs", required=True, metavar="VERB")
     _add_predict(verbs)
     _add_edit(verbs)
+    _add_person(verbs)
+    _add_compare(verbs)
+    _add_capture_verb(verbs)
     for verb, help_ in PIPELINE.items():
         verbs.add_parser(verb, help=help_, add_help=False)
     arguments = list(sys.argv[1:] if argv is None else argv)
@@ -78,6 +81,43 @@ def _run_pipeline(verb: str, arguments: list[str]) -> int:
 
 def _add_predict(verbs: "argparse._SubParsersAction[argparse.ArgumentParser]") -> None:
     verb = verbs.add_parser("predict", help="make maps, a panel and a summary of photographs")
+    _add_inputs(verb)
+    verb.add_argument(
+        "--json", action="store_true", help="print each summary as one line of JSON, nothing else"
+    )
+    verb.add_argument(
+        "--csv",
+        type=Path,
+        metavar="FILE",
+        help="append one row for each face, and one with the reason for each file that is not read",
+    )
+    verb.add_argument(
+        "--no-detail",
+        dest="detail",
+        action="store_false",
+        help="do not add the photograph's detail to the network's maps; faster",
+    )
+    _add_common(verb)
+    verb.set_defaults(run=_predict)
+
+
+def _add_person(verbs: "argparse._SubParsersAction[argparse.ArgumentParser]") -> None:
+    verb = verbs.add_parser(
+        "person",
+        help="fuse shots of one person by their uncertainty, and check that they agree",
+        description="Fuse two shots or more of one person, region by region, into a panel and a "
+        "summary. One shot that is plainly unlike the others is left out. The exit code is 2 if "
+        "not all shots could be used.",
+    )
+    _add_inputs(verb)
+    verb.add_argument(
+        "--json", action="store_true", help="print the summary as one line of JSON, nothing else"
+    )
+    _add_common(verb)
+    verb.set_defaults(run=_person)
+
+
+def _add_inputs(verb: argparse.ArgumentParser) -> None:
     verb.add_argument(
         "input",
         nargs="+",
@@ -93,17 +133,6 @@ def _add_predict(verbs: "argparse._SubParsersAction[argparse.ArgumentParser]") -
         metavar="DIR",
         help="folder to write to; by default skinmaps in the photograph's folder",
     )
-    verb.add_argument(
-        "--json", action="store_true", help="print each summary as one line of JSON, nothing else"
-    )
-    verb.add_argument(
-        "--no-detail",
-        dest="detail",
-        action="store_false",
-        help="do not add the photograph's detail to the network's maps; faster",
-    )
-    _add_common(verb)
-    verb.set_defaults(run=_predict)
 
 
 def _add_edit(verbs: "argparse._SubParsersAction[argparse.ArgumentParser]") -> None:
@@ -127,6 +156,81 @@ def _add_edit(verbs: "argparse._SubParsersAction[argparse.ArgumentParser]") -> N
         )
     _add_common(verb)
     verb.set_defaults(run=_edit)
+
+
+def _add_capture_verb(verbs: "argparse._SubParsersAction[argparse.ArgumentParser]") -> None:
+    verb = verbs.add_parser(
+        "capture",
+        help="make a profile of a session from a picture of a colour chart or a white reference",
+    )
+    verb.add_argument("input", help="a picture of a colour chart, or of something white or grey")
+    verb.add_argument(
+        "-o",
+        "--output",
+        type=Path,
+        metavar="FILE",
+        required=True,
+        help="the profile, a .yaml file, for --capture of predict and edit",
+    )
+    _add_references(verb)
+    verb.set_defaults(run=_capture)
+
+
+def _add_references(verb: argparse.ArgumentParser) -> None:
+    """Add what a picture shows of its own light and camera."""
+    group = verb.add_argument_group("references in the picture")
+    group.add_argument(
+        "--white",
+        metavar="X,Y[,X1,Y1]",
+        help="where something white or grey is, lit as the face: a point, or a box, in pixels from "
+        "the upper left corner of the upright picture",
+    )
+    group.add_argument(
+        "--white-colour",
+        metavar="COLOUR",
+        help="what is there: the share of light that it reflects, such as 0.18 for a grey card, or "
+        "its colour in sRGB, such as 230,225,210 or #e6e1d2",
+    )
+    group.add_argument(
+        "--chart",
+        metavar="classic|FILE.csv",
+        help="a colour chart: classic for the ColorChecker Classic and Passport, or the patches of "
+        "another in a CSV file with the columns row, column, and L, a, b or wavelengths; needs the "
+        "chart extra",
+    )
+
+
+def _add_compare(verbs: "argparse._SubParsersAction[argparse.ArgumentParser]") -> None:
+    verb = verbs.add_parser(
+        "compare", help="find how melanin and hemoglobin of a face differ in two photographs"
+    )
+    verb.add_argument("before", help="a photograph, or - for standard input")
+    verb.add_argument("after", help="another one of the same face, from the same side")
+    verb.add_argument(
+        "-o",
+        "--output",
+        type=Path,
+        metavar="DIR",
+        help="folder to write to; by default skinmaps in the folder of the first photograph",
+    )
+    verb.add_argument(
+        "--json", action="store_true", help="print the summary as one line of JSON, nothing else"
+    )
+    verb.add_argument(
+        "--model",
+        type=Path,
+        metavar="FILE",
+        help="encoder, X.onnx, with X.decoder.onnx in the same folder; by default the shipped one",
+    )
+    verb.add_argument(
+        "--capture",
+        type=Path,
+        metavar="FILE.yaml",
+        help="the profile of the session of both, which skinnet capture makes",
+    )
+    _add_references(verb)
+    _add_capture(verb)
+    verb.set_defaults(run=_compare)
 
 
 def _add_common(verb: argparse.ArgumentParser) -> None:
@@ -157,6 +261,31 @@ def _add_common(verb: argparse.ArgumentParser) -> None:
         const="skin",
         help="the same as --region skin",
     )
+    verb.add_argument(
+        "--capture",
+        type=Path,
+        metavar="FILE.yaml",
+        help="the profile of the session, which skinnet capture makes",
+    )
+    _add_references(verb)
+    _add_capture(verb)
+
+
+def _add_capture(verb: argparse.ArgumentParser) -> None:
+    """Add what may be known of the light and the camera."""
+    known = verb.add_argument_group("what is known of the light and the camera")
+    known.add_argument(
+        "--camera",
+        metavar="NAME",
+        help="the camera, such as 'Nikon D700', or exif for the one that each photograph's EXIF "
+        "names; RAW files name theirs themselves",
+    )
+    known.add_argument(
+        "--light",
+        metavar="NAME",
+        help="the light: daylight, D65 or D5500K for daylight of a temperature, flash, A (tungsten)"
+        ", FL2, FL7 or FL11 (fluorescent), LED-B1, LED-B3, LED-B5 or LED-V1",
+    )
 
 
 def _predict(options: argparse.Namespace) -> int:
@@ -165,8 +294,28 @@ def _predict(options: argparse.Namespace) -> int:
     return _OK if predict(options) else _BAD_INPUT
 
 
+def _person(options: argparse.Namespace) -> int:
+    from skinnet.inference._person_verb import person
+
+    return _OK if person(options) else _BAD_INPUT
+
+
+def _capture(options: argparse.Namespace) -> int:
+    from skinnet.inference._capture_verb import capture
+
+    capture(options)
+    return _OK
+
+
 def _edit(options: argparse.Namespace) -> int:
     from skinnet.inference._photo_verbs import edit
 
     edit(options)
+    return _OK
+
+
+def _compare(options: argparse.Namespace) -> int:
+    from skinnet.inference._compare_verb import compare
+
+    compare(options)
     return _OK

@@ -36,6 +36,24 @@ def test_a_verb_without_the_scans_extra_names_it(missing: str) -> None:
     assert 'pip install "skinnet[scans]"' in done.stderr and "Traceback" not in done.stderr
 
 
+@pytest.mark.parametrize("missing", ["colour_checker_detection", "cv2", "colour"])
+@pytest.mark.slow
+def test_a_chart_without_its_extra_names_it(missing: str) -> None:
+    code = (
+        "import sys\n"
+        f"sys.modules[{missing!r}] = None\n"
+        "from skimage.data import astronaut\n"
+        "from skinnet.inference import CaptureProfile\n"
+        "from skinnet.errors import InputError\n"
+        "try:\n"
+        "    CaptureProfile.from_chart(astronaut())\n"
+        "except InputError as error:\n"
+        "    print(error)\n"
+    )
+    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True)
+    assert 'pip install "skinnet[chart]"' in done.stdout and done.stderr == ""
+
+
 @pytest.mark.slow
 def test_a_verb_needs_no_embree() -> None:
     """It has no wheel for some platforms, and rays are cast without it there."""

@@ -42,7 +42,7 @@ def test_python_runs(code: str) -> None:
 def test_commands_run() -> None:
     commands = [line for block in blocks("sh") for line in block.splitlines()]
     ours = [line for line in commands if line.startswith("skinnet ") and "--model" not in line]
-    assert len(ours) == 7
+    assert len(ours) == 8
     for number in (1, 2, 3):
         write_scan(Path(f"scans/{number}.obj"), number)
     for command in ours:

@@ -14,8 +14,10 @@ from pathlib import Path
 
 import colour
 import numpy as np
+import torch
 from numpy.typing import NDArray
 
+from skinnet.physics import SpectralCamera
 from skinnet.physics._band_averages import average_over_bands
 
 BANDS = np.arange(400, 721, 10)
@@ -38,6 +40,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
     write_light_tables()
     write_pigments(raw)
     write_cameras(raw)
+    write_camera_basis()
     return 0
 
 
@@ -103,6 +106,19 @@ def write_cameras(raw: Path) -> None:
         "spectral sensitivities, Academy Software Foundation rawtoaces-data, Apache-2.0",
         ("camera", "channel", *(str(band) for band in BANDS)),
         [[row[0], row[1], *(float(row[column]) for column in columns)] for row in rows],
+    )
+
+
+def write_camera_basis() -> None:
+    """Write mean and components of the measured cameras, for what must not import torch."""
+    camera = SpectralCamera(dtype=torch.float64)
+    curves = torch.cat([camera.mean[None], camera.basis]).mT.flatten(0, 1).tolist()
+    parts = ["mean", *map(str, range(1, len(camera.basis) + 1))]
+    write(
+        "camera_basis.csv",
+        "mean of the measured cameras, and components of one standard deviation (SpectralCamera)",
+        ("part", "channel", *(str(band) for band in BANDS)),
+        [[parts[row // 3], "RGB"[row % 3], *curve] for row, curve in enumerate(curves)],
     )
 
 

@@ -11,9 +11,10 @@ from skinnet.files import READ_ERRORS
 from skinnet.images._chunks import has_sound_pixels
 from skinnet.images._colour_decision import decide_colour_space
 from skinnet.images._frames import describe_frames
-from skinnet.images._kind import HEIF, OTHER, PICTURE, identify
+from skinnet.images._kind import HEIF, OTHER, PICTURE, RAW, Kind, identify
 from skinnet.images._metadata import keep_metadata
 from skinnet.images._pixels import read_pixels
+from skinnet.images._raw.raw_file import read_raw
 from skinnet.images.picture import Picture
 
 MAX_PIXELS = 100_000_000
@@ -38,10 +39,13 @@ def decode_file(file: BinaryIO | BytesIO, name: str, upright: bool = True) -> Pi
     data = file.read()
     if not data:
         raise InputError(f"{name} is empty (0 bytes); was it copied completely?")
+    kind = identify(BytesIO(data), name)
+    if kind is RAW:  # before Pillow, which would show the preview in it
+        return read_raw(data, name, MAX_PIXELS, upright)
     with warnings.catch_warnings():
         # Pillow warns of large pictures, which have their own limit here, and of odd metadata.
         warnings.simplefilter("ignore")
-        return decode_image(_open(data, name), name, data, upright)
+        return decode_image(_open(data, name, kind), name, data, upright)
 
 
 def decode_image(image: Image.Image, name: str, data: bytes = b"", upright: bool = True) -> Picture:
@@ -98,13 +102,12 @@ def _refuse_raw(image: Image.Image, name: str) -> None:
     reduced = int(tags.get(_SUBFILE_TYPE, 0)) & 1
     if mosaic or reduced:
         raise InputError(
-            f"{name} is a RAW file, or one that begins with a preview; develop it to JPEG, PNG or "
-            "TIFF in sRGB first."
+            f"{name} is a RAW file, or one that begins with a preview; give the path of a RAW "
+            "file, or develop it to JPEG, PNG or TIFF in sRGB."
         )
 
 
-def _open(data: bytes, name: str) -> Image.Image:
-    kind = identify(BytesIO(data), name)
+def _open(data: bytes, name: str, kind: Kind) -> Image.Image:
     if kind is HEIF:
         return _open_heif(data, name)
     if kind not in (PICTURE, OTHER):

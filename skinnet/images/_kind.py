@@ -26,7 +26,10 @@ def _name_kind(one: str, remedy: str = _SAVE) -> Kind:
 
 PICTURE = Kind("a picture", "pictures")
 HEIF = _name_kind("a HEIC picture", 'pip install "skinnet[heif]" reads it; or save it as JPEG')
-RAW = Kind("a RAW file", "RAW files", "develop it, and save it as 16-bit TIFF or JPEG")
+RAW = _name_kind(
+    "a RAW file",
+    'pip install "skinnet[raw]" reads it; or develop it, and save it as 16-bit TIFF or JPEG',
+)
 OTHER = Kind("another file", "other files", "give a JPEG, PNG, TIFF or WebP file")
 EMPTY = Kind("an empty file", "empty files", "was it copied completely?")
 THUMBNAIL = _name_kind("a camera's thumbnail", "give the picture itself, or rename this to .jpg")
@@ -127,7 +130,8 @@ def identify(file: BinaryIO | BufferedIOBase, name: str = "") -> Kind:
 
 def is_readable(kind: Kind) -> bool:
     """Whether files of a kind can be read here."""
-    return kind is PICTURE or (kind is HEIF and find_spec("pillow_heif") is not None)
+    extra = {HEIF: "pillow_heif", RAW: "rawpy"}.get(kind)
+    return kind is PICTURE or (extra is not None and find_spec(extra) is not None)
 
 
 def promises_picture(name: str, kind: Kind) -> bool:

@@ -29,7 +29,12 @@ EDITED = "edited"
 _SOFTWARE = 0x0131
 _LINE = re.compile(r"skinnet (\S+) ([\w-]+) ([\w-]+)(?: sha256:([0-9a-f]{64}))?")
 _OLD_MAP = frozenset({"map", "scale", "offset", "unit"})
-_SUMMARY = frozenset({"maps", "light", "camera", "skin_share"})
+_SUMMARIES = (
+    frozenset({"maps", "light", "camera", "skin_share"}),
+    frozenset({"shots", "pigments", "shared_correlation"}),
+)
+"""Keys of the summaries of a photograph and of a person."""
+
 _SCAN_PICTURES = {
     "shape": ("_shape.npz",),
     **dict.fromkeys(("panel", "albedo", "render", "face"), ("_maps.npz",)),
@@ -99,14 +104,16 @@ def read_mark(source: _Source) -> Mark | None:
 
 
 def read_summary(path: Path) -> dict[str, Any] | None:
-    """Read a JSON file if it is a summary that `skinnet predict` wrote, of any version."""
+    """Read a JSON file if it is a summary of a photograph or a person, of any version."""
     try:
         if not path.is_file() or path.stat().st_size > _LARGEST_SUMMARY:
             return None
         summary = json.loads(path.read_bytes())
     except READ_ERRORS:
         return None
-    return summary if isinstance(summary, dict) and summary.keys() >= _SUMMARY else None
+    if not isinstance(summary, dict):
+        return None
+    return summary if any(summary.keys() >= keys for keys in _SUMMARIES) else None
 
 
 def parse_mark(line: object) -> Mark | None:

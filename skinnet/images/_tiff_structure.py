@@ -15,6 +15,9 @@ _SENSOR = frozenset({32803, 34892})
 _CAMERA_COMPRESSIONS = frozenset({32767, 32769, 32770, 32867, 34713, 34892, 65000, 65535})
 """Compressions of Sony, Epson, Samsung, Kodak, Nikon, lossy DNG, Kodak and Pentax."""
 
+_PLACES = {273: 279, 324: 325}
+"""Offsets of strips and of tiles, and their lengths in bytes."""
+
 _TYPES = {1: "B", 3: "H", 4: "I", 13: "I", 16: "Q", 18: "Q"}
 _MOST_DIRECTORIES, _MOST_ENTRIES = 16, 512
 _File = BinaryIO | BufferedIOBase
@@ -46,6 +49,20 @@ def is_raw(file: _File) -> bool:
         if number == 0 and preview and _SUB_IFDS in tags:
             return True
     return False
+
+
+def find_sensor_end(file: _File) -> int:
+    """Find where the values of the sensor end, as an open TIFF file states it; 0 if it does not.
+
+    Raises:
+        EOFError: A directory is missing.
+    """
+    ends = [0]
+    for tags in _list_directories(file, _read(file, 0, 16)):
+        if _SENSOR & {*tags.get(_PHOTOMETRIC, ())}:
+            for start, size in _PLACES.items():
+                ends += map(sum, zip(tags.get(start, ()), tags.get(size, ()), strict=False))
+    return max(ends)
 
 
 def _list_directories(file: _File, head: bytes) -> Iterator[_Directory]:

@@ -82,7 +82,7 @@ _FORMATS = {
 }
 """Formats that are written, by Pillow's names."""
 
-_REASONS = {"GIF": "GIF holds 256 colours only"}
+_REASONS = {"GIF": "GIF holds 256 colours only", "RAW": "RAW files are only read"}
 
 
 def choose_suffix(picture: Picture, suffix: str) -> tuple[str, tuple[str, ...]]:

@@ -27,6 +27,10 @@ def read_picture(
     image: remove the tag (as `PIL.ImageOps.exif_transpose` does) if you have turned it yourself. Of
     several frames the first is read.
 
+    A RAW file (DNG, CR3, NEF, ARW, RAF and others) needs the extra `raw`. It becomes sRGB of linear
+    light without a tone curve, in the white balance that the camera was set to; the previews in it
+    are not read.
+
     Args:
         source: A path, an open binary file, a Pillow image, or an sRGB array [H, W], [H, W, 1],
             [H, W, 3] or [H, W, 4] of uint8 or of floats in [0, 1].

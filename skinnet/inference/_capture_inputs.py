@@ -2,12 +2,15 @@
 
 import difflib
 from collections.abc import Mapping
-from typing import Any, Protocol, runtime_checkable
+from typing import Any, NamedTuple, Protocol, runtime_checkable
 
 import numpy as np
 from numpy.typing import NDArray
 
 from skinnet.errors import InputError
+from skinnet.images._raw.raw_file import FORMAT as RAW
+from skinnet.images._shot import read_shot
+from skinnet.images.picture import Picture
 from skinnet.inference.capture import Capture
 from skinnet.inference.onnx_model import OnnxModel
 
@@ -54,6 +57,13 @@ class CaptureLike(Protocol):
 Inputs = dict[str, NDArray[np.float32]]
 
 
+class Joined(NamedTuple):
+    """Inputs of the encoder, and what the user should read of them."""
+
+    inputs: Inputs
+    notes: tuple[str, ...]
+
+
 def make_capture_inputs(capture: CaptureLike, encoder: OnnxModel) -> Inputs:
     """Make the optional inputs of an encoder, [1] or [1, n], of what is known of one capture.
 
@@ -77,9 +87,36 @@ def make_capture_inputs(capture: CaptureLike, encoder: OnnxModel) -> Inputs:
     return inputs
 
 
+def join_captures(picture: Picture, capture: CaptureLike | None, encoder: OnnxModel) -> Joined:
+    """Join what a RAW file tells of its capture with what is given, which comes first.
+
+    Returns:
+        The inputs, and a sentence if another camera was given than EXIF names.
+
+    Raises:
+        InputError: As `make_capture_inputs`.
+    """
+    told = Capture.from_photograph(picture)
+    found = make_capture_inputs(told, encoder) if picture.format == RAW else {}
+    given = {} if capture is None else make_capture_inputs(capture, encoder)
+    inputs = found | given
+    ordered = {f"known_{name}": inputs.get(f"known_{name}") for name in Capture._fields}
+    known = {name: value for name, value in ordered.items() if value is not None}
+    return Joined(known, _note_camera(picture, told, given.get("known_camera")))
+
+
 def name_known(inputs: Inputs) -> tuple[str, ...]:
     """Name what is known, as the fields of `Capture` are named."""
     return tuple(name.removeprefix("known_") for name in inputs)
+
+
+def _note_camera(
+    picture: Picture, told: Capture, given: NDArray[np.float32] | None
+) -> tuple[str, ...]:
+    if given is None or told.camera is None or np.allclose(given[0], told.camera, atol=0.01):
+        return ()
+    camera = read_shot(picture.metadata["exif"]).camera
+    return (f"{picture.name} is from a {camera} by its EXIF, and another camera was given.",)
 
 
 def _order_lights(light: Any, names: tuple[str, ...]) -> Any:
@@ -87,14 +124,16 @@ def _order_lights(light: Any, names: tuple[str, ...]) -> Any:
     if not isinstance(light, Mapping):
         return light
     folded = {name.casefold(): name for name in names}
-    for name in light:
-        if name not in names:
+    weights = dict.fromkeys(names, 0.0)
+    for name, weight in light.items():
+        if str(name).casefold() not in folded:
             close = difflib.get_close_matches(str(name).casefold(), folded, 1, 0.4)
             meant = f"; {folded[close[0]]} may be meant" if close else ""
             raise InputError(
                 f"There is no light of the name {name!r}{meant}. The lights are {', '.join(names)}."
             )
-    return [light.get(name, 0.0) for name in names]
+        weights[folded[str(name).casefold()]] += weight
+    return list(weights.values())
 
 
 def _read_numbers(name: str, part: Any, count: int) -> NDArray[np.float64] | None:

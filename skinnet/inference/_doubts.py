@@ -23,7 +23,7 @@ _MOST_PIXELS = 1 << 20
 
 _GIVE_WHITE = (
     "The colour of something white or grey in the photograph, such as a wall or a sheet of paper, "
-    "tells the light: give it (in Python capture=Capture.from_white(colour))."
+    "tells the light: give its place by --white X,Y (in Python capture=Capture.from_reference)."
 )
 _GIVE_DAYLIGHT = "Give a photograph in daylight, without coloured light, filters or retouching."
 

@@ -15,12 +15,14 @@ def note(sentence: str) -> None:
 
 def report(error: Exception) -> None:
     """Print an error as a sentence."""
-    sentence = str(error)
+    note(describe(error))
+
+
+def describe(error: Exception) -> str:
+    """Describe an error in a sentence."""
     if isinstance(error, OSError):
-        sentence = (
-            f"{error.filename or 'A file'} cannot be used ({error.strerror}); check the path."
-        )
-    note(sentence)
+        return f"{error.filename or 'A file'} cannot be used ({error.strerror}); check the path."
+    return str(error)
 
 
 def _escape(text: str, encoding: str | None) -> str:

@@ -19,8 +19,10 @@ from skinnet.images.faces._face_models import open_ahead
 from skinnet.images.photograph import read_picture
 from skinnet.images.picture import Picture
 from skinnet.inference._face_choice import check_choice
-from skinnet.inference._messages import note, print_line, report
+from skinnet.inference._face_rows import FaceTable
+from skinnet.inference._messages import describe, note, print_line, report
 from skinnet.inference._own_results import Source, choose_edit_target, choose_result_stem
+from skinnet.inference._told_capture import ToldCapture
 from skinnet.inference.decomposer import Decomposer
 from skinnet.inference.decomposition import Decomposition
 from skinnet.inference.results import (
@@ -46,16 +48,18 @@ def predict(options: argparse.Namespace) -> bool:
     decomposer = _make_decomposer(options)
     decomposer.load()
     found = walk(options.input, options.recursive)
+    told = ToldCapture.from_options(options, decomposer, len(found.pictures))
+    table = FaceTable(options.csv)
     counts: Counter[str] = Counter()
     for picture in found.pictures:
         try:
-            counts[_predict_one(decomposer, picture, options)] += 1
+            counts[_predict_one(decomposer, picture, options, told, table)] += 1
         except BrokenPipeError:
             raise
         except (InputError, OSError) as error:
             counts[_READ_NOT] += 1
-            report(error)
-    for sentence in found.notes:
+            _report_failure(table, _name(picture), error)
+    for sentence in (*found.notes, *table.notes):
         note(sentence)
     single = len(found.pictures) == 1 and found.pictures[0].path == options.input[0]
     if not single or found.passed_over or len(options.input) > 1:
@@ -70,11 +74,18 @@ def _make_decomposer(options: argparse.Namespace) -> Decomposer:
     return Decomposer(options.model)
 
 
-def _predict_one(decomposer: Decomposer, found: Found, options: argparse.Namespace) -> str:
+def _predict_one(
+    decomposer: Decomposer,
+    found: Found,
+    options: argparse.Namespace,
+    told: ToldCapture,
+    table: FaceTable,
+) -> str:
     """Decompose a picture, and write its results. Returns under what it is counted."""
     if found.error is not None:
         raise found.error
     source, picture, notes = _read(found)
+    known, told_notes = told.tell(picture)
     try:
         decompositions = decomposer(
             picture,
@@ -82,16 +93,26 @@ def _predict_one(decomposer: Decomposer, found: Found, options: argparse.Namespa
             detail=options.detail,
             faces=options.faces,
             region=options.region,
+            capture=known,
         )
     except NoFaceError as error:
-        report(error)
+        _report_failure(table, source.name, error)
         return _FACELESS
     try:
-        _write(source, picture, decompositions, notes, options)
+        table.add(_write(source, picture, decompositions, (*notes, *told_notes), options))
     except InputError as error:
-        report(error)
+        _report_failure(table, source.name, error)
         return _WRITTEN_NOT
     return _READ
+
+
+def _report_failure(table: FaceTable, name: str, error: Exception) -> None:
+    """Print why a file was not read, and add it to the table."""
+    report(error)
+    try:
+        table.add_failure(name, describe(error))
+    except InputError as fault:
+        report(fault)
 
 
 def _write(
@@ -100,8 +121,12 @@ def _write(
     decompositions: Sequence[Decomposition],
     notes: Sequence[str],
     options: argparse.Namespace,
-) -> None:
-    """Write the results of a photograph under names that are free or its own, and print them."""
+) -> list[dict[str, Any]]:
+    """Write the results of a photograph under names that are free or its own, and print them.
+
+    Returns:
+        The summaries that were written.
+    """
     folder = _make_folder(options.output or source.folder / OUTPUT)
     with lock_folder(folder):
         stem = choose_result_stem(folder, source, _list_all_ends(decompositions))
@@ -118,6 +143,7 @@ def _write(
         note(sentence)
     for result in results:
         _print(source, folder, result, count, options.json)
+    return [result.summary for result in results]
 
 
 def _print(source: Source, folder: Path, result: _Result, count: int, as_json: bool) -> None:
@@ -156,9 +182,11 @@ def edit(options: argparse.Namespace) -> None:
     if options.output is not None:
         find_format(options.output)
     decomposer = _make_decomposer(options)
+    told = ToldCapture.from_options(options, decomposer, 1)
     source, picture, notes = _read(find_one(options.input))
     suffix, changes = choose_suffix(picture, "" if source.path is None else source.path.suffix)
     target = choose_edit_target(source, options.output, suffix)
+    known, told_notes = told.tell(picture)
     edited = decomposer.edit_picture(
         picture,
         options.melanin,
@@ -166,10 +194,11 @@ def edit(options: argparse.Namespace) -> None:
         name=source.name,
         faces=options.faces,
         region=options.region,
+        capture=known,
     )
     losses = write_picture(target, edited, Mark("edit", EDITED, source.digest))
     changes = () if options.output else changes
-    for sentence in (*notes, *edited.notes, *changes, *losses):
+    for sentence in (*notes, *told_notes, *edited.notes, *changes, *losses):
         note(sentence)
     print_line(f"{source.name}: {target}")
 
@@ -180,7 +209,12 @@ def _read(found: Found) -> tuple[Source, Picture, tuple[str, ...]]:
         path = Path(found.path)
         picture = read_picture(path, found.path)
         return Source(found.path, path, compute_digest(path)), picture, found.notes
-    name, data = "standard input", b"" if sys.stdin is None else sys.stdin.buffer.read()
+    name, data = _name(found), b"" if sys.stdin is None else sys.stdin.buffer.read()
     notes = check_mark(read_mark(BytesIO(data)), name)
     picture = read_picture(BytesIO(data), name)
     return Source(name, None, hashlib.sha256(data).hexdigest()), picture, notes
+
+
+def _name(found: Found) -> str:
+    """The name of a picture in messages."""
+    return "standard input" if found.path == STDIN else found.path

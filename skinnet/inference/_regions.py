@@ -6,7 +6,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from skinnet.images.faces._face_parts import FaceRegion
+from skinnet.inference._index_summary import SkinIndices
 from skinnet.inference._uncertainty import find_interval
+from skinnet.inference.indices import _find_indices
 
 _LEAST_PIXELS = 30
 """Least pixels of skin of a region whose pigments are given."""
@@ -41,17 +43,21 @@ class RegionSummary(NamedTuple):
         hemoglobin: Hemoglobin over the region's skin.
         share: Part of the region that is skin and inside the photograph, in [0, 1].
         pixels: Number of pixels of skin.
+        indices: Colour, typology angle and the like of skin with the mean pigments, with 90 %
+            intervals; None if there are none, or the fractions are not of the preset `measured`.
     """
 
     melanin: PigmentSummary
     hemoglobin: PigmentSummary
     share: float
     pixels: int
+    indices: SkinIndices | None = None
 
     def to_json(self) -> dict[str, Any]:
         """The same as numbers for JSON."""
         pigments = {"melanin": self.melanin._asdict(), "hemoglobin": self.hemoglobin._asdict()}
-        return {**pigments, "share": self.share, "pixels": self.pixels}
+        indices = None if self.indices is None else self.indices.to_json()
+        return {**pigments, "share": self.share, "pixels": self.pixels, "indices": indices}
 
 
 class Pigment(NamedTuple):
@@ -69,15 +75,24 @@ class Pigment(NamedTuple):
 
 
 def summarise_region(
-    region: FaceRegion, read: NDArray[np.bool_], melanin: Pigment, hemoglobin: Pigment
+    region: FaceRegion,
+    read: NDArray[np.bool_],
+    melanin: Pigment,
+    hemoglobin: Pigment,
+    optics: str | None = None,
 ) -> RegionSummary:
-    """Summarise melanin and hemoglobin over the pixels [h, w] of the region's box that are read."""
+    """Summarise both pigments over the pixels [h, w] of the region's box that are read.
+
+    `optics` is the preset to which the fractions belong.
+    """
     pixels = int(read.sum())
     share = pixels / max(1, region.area)
     if pixels < _LEAST_PIXELS or share < _LEAST_SHARE:
         return RegionSummary(PigmentSummary(), PigmentSummary(), _round(share), pixels)
     of_melanin, of_hemoglobin = (_summarise(each, read) for each in (melanin, hemoglobin))
-    return RegionSummary(of_melanin, of_hemoglobin, _round(share), pixels)
+    means, log_sds = (of_melanin.mean, of_hemoglobin.mean), (melanin.log_sd, hemoglobin.log_sd)
+    indices = _find_indices(optics, means, log_sds)
+    return RegionSummary(of_melanin, of_hemoglobin, _round(share), pixels, indices)
 
 
 def _summarise(pigment: Pigment, read: NDArray[np.bool_]) -> PigmentSummary:

@@ -2,13 +2,22 @@
 
 import math
 from collections.abc import Mapping, Sequence
+from pathlib import Path
 from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
+from PIL import Image
 
 from skinnet.errors import InputError
+from skinnet.images._raw.cameras import find_camera, list_close_names
+from skinnet.images._raw.raw_file import FORMAT as RAW
+from skinnet.images._shot import read_shot
+from skinnet.images.photograph import read_picture
+from skinnet.images.picture import Picture
 from skinnet.images.srgb import LUMINANCE_WEIGHTS, srgb_to_linear
+from skinnet.inference._light_names import find_light
+from skinnet.inference._references.place import make_card, measure_colour
 
 _TO_CAMERA = np.array(
     (
@@ -63,6 +72,74 @@ class Capture(NamedTuple):
     exposure: float | None = None
 
     @classmethod
+    def from_names(cls, camera: str | None = None, light: str | None = None) -> "Capture":
+        """Find camera and light by their names.
+
+        Args:
+            camera: One of the 52 measured cameras, by a name that its maker or EXIF gives it, in
+                any case, such as "Nikon D700".
+            light: Daylight of a temperature (D65, D5500K, 5500K), daylight (of any temperature),
+                flash (as D5500K), tungsten (as A), or a name in `OnnxModel.lights`, such as FL2.
+
+        Returns:
+            A capture of which the coefficients of the camera, the light, and its temperature if the
+            name has one, are known.
+
+        Raises:
+            InputError: The camera is not among those measured; the nearest names are given. Or
+                daylight has no such temperature. Other lights are checked when they are used.
+
+        Example:
+            >>> from skinnet.inference import Capture
+            >>> capture = Capture.from_names("nikon d700", "D5500K")
+            >>> capture.light, capture.temperature, len(capture.camera)
+            ({'D': 1.0}, 5500.0, 6)
+        """
+        found = find_camera(camera) if camera is not None else None
+        if camera is not None and found is None:
+            raise InputError(
+                f"The camera {camera!r} is not among those whose sensitivities are measured; the "
+                f"nearest names are {', '.join(list_close_names(camera))}. Leave it out if it is "
+                "none of them."
+            )
+        name, temperature = (None, None) if light is None else find_light(light)
+        return cls(
+            light=None if name is None else {name: 1.0},
+            temperature=temperature,
+            camera=None if found is None else found.coefficients,
+        )
+
+    @classmethod
+    def from_photograph(cls, image: str | Path | Image.Image | NDArray[Any] | Picture) -> "Capture":
+        """Find what a photograph itself tells of its capture.
+
+        `Decomposer` does this for RAW files, which are developed as training does it. It does not
+        for others, since EXIF does not tell what was done to the colours after the sensor.
+
+        Args:
+            image: A photograph as for `Decomposer`.
+
+        Returns:
+            A capture whose camera is known if EXIF names one of the measured cameras, and which is
+            known to be linear if it is a RAW file.
+
+        Raises:
+            InputError: The photograph cannot be read.
+
+        Example:
+            >>> from skimage.data import astronaut
+            >>> from skinnet.inference import Capture
+            >>> Capture.from_photograph(astronaut()) == Capture()  # an array has no EXIF
+            True
+        """
+        picture = image if isinstance(image, Picture) else read_picture(image)
+        camera = find_camera(read_shot(picture.metadata.get("exif", b"")).camera or "")
+        return cls(
+            camera=None if camera is None else camera.coefficients,
+            linear=True if picture.format == RAW else None,
+        )
+
+    @classmethod
     def from_white(
         cls,
         colour: Sequence[Any] | NDArray[Any],
@@ -96,6 +173,76 @@ class Capture(NamedTuple):
         balance = red - green, blue - green
         _refuse_unfit(display, balance)
         return cls(white_balance=balance, exposure=_find_exposure(linear, reflectance))
+
+    @classmethod
+    def from_reference(
+        cls,
+        image: str | Path | Image.Image | NDArray[Any] | Picture,
+        place: Sequence[int],
+        colour: float | Sequence[int] | None = None,
+    ) -> "Capture":
+        """Measure something white or grey, or of a known colour, at a place of a photograph.
+
+        Args:
+            image: A photograph, as for `Decomposer`.
+            place: Where it is: (x, y), or a box (x0, y0, x1, y1), in pixels from the upper left
+                corner of the upright photograph.
+            colour: Its reflectance in [0.01, 1], or its sRGB in integers of 0 to 255, as its maker
+                states it; None for something white or grey.
+
+        Returns:
+            A capture of which the white balance is known, and the exposure if `colour` is given.
+
+        Raises:
+            InputError: The photograph cannot be read; the place is not in it; or what is there is
+                overexposed, too dark, uneven, or more coloured than a light makes of it.
+
+        Example:
+            >>> from skimage.data import astronaut
+            >>> from skinnet.inference import Capture
+            >>> capture = Capture.from_reference(astronaut(), (300, 20, 320, 40))  # the wall
+            >>> len(capture.white_balance), capture.exposure is None
+            (2, True)
+        """
+        picture = image if isinstance(image, Picture) else read_picture(image)
+        card = make_card(colour)
+        display = measure_colour(picture, tuple(place))
+        if card.colour is None:
+            return cls.from_white(display, card.reflectance)
+        linear, own = srgb_to_linear(display).astype(np.float64), np.array(card.colour)
+        red, green, blue = (
+            np.log(np.maximum(_TO_CAMERA @ linear, _LEAST)) - np.log(_TO_CAMERA @ own)
+        ).tolist()
+        balance = red - green, blue - green
+        _refuse_unfit(display, balance)
+        return cls(
+            white_balance=balance,
+            exposure=_find_exposure(linear, min(1.0, float(own @ LUMINANCE_WEIGHTS))),
+        )
+
+    @classmethod
+    def from_chart(
+        cls,
+        image: str | Path | Image.Image | NDArray[Any] | Picture,
+        chart: str | Path = "classic",
+    ) -> "Capture":
+        """Read the colour chart in a photograph.
+
+        `CaptureProfile.from_chart` finds the tone curve, too, and undoes it.
+
+        Args:
+            image: A photograph, as for `Decomposer`.
+            chart: `classic`, or a CSV file, as for `CaptureProfile.from_chart`.
+
+        Returns:
+            White balance and exposure; light and camera, too, if they are told.
+
+        Raises:
+            InputError: As `CaptureProfile.from_chart`.
+        """
+        from skinnet.inference.capture_profile import CaptureProfile
+
+        return CaptureProfile.from_chart(image, chart).capture
 
 
 def _find_exposure(linear: NDArray[np.float64], reflectance: float | None) -> float | None:

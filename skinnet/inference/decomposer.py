@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 from PIL import Image
 
 from skinnet.errors import InputError
+from skinnet.images._shot import read_shot
 from skinnet.images.faces._face_parts import find_face_parts
 from skinnet.images.photograph import read_picture
 from skinnet.images.picture import Picture
@@ -20,14 +21,16 @@ from skinnet.images.srgb import srgb_to_linear
 from skinnet.inference._capture_inputs import (
     CaptureLike,
     Inputs,
-    make_capture_inputs,
+    join_captures,
     name_known,
 )
 from skinnet.inference._capture_names import name_camera, name_light
 from skinnet.inference._doubts import list_doubts
 from skinnet.inference._editing import ColourChange, apply_change, compute_change
 from skinnet.inference._face_choice import FaceChoice
+from skinnet.inference._metering import brighten, find_gain, scale_back, shift_exposure
 from skinnet.inference._onnx_pair import get_decoder_path, refuse_other_export
+from skinnet.inference._references.profile_use import Applied, apply_profile
 from skinnet.inference._skin_mask import adopt_mask, find_skin
 from skinnet.inference._subject import Region, Subject, find_subjects
 from skinnet.inference._transparency import note_transparency
@@ -146,7 +149,9 @@ class Decomposer:
                 one alone.
             region: "face", or "skin" to read whatever skin the photograph shows, such as a forearm,
                 without a search for a face.
-            capture: What is known of the light and the camera; None: nothing.
+            capture: What is known of the light and the camera: a `Capture`, or a `CaptureProfile`
+                of the session, whose tone curve is undone; None: nothing. Of a RAW file it is
+                known, too, that it is linear, and which camera took it if that is a measured one.
 
         Returns:
             Maps of the photograph's size, light and camera. If `faces` is given, a list of them,
@@ -164,11 +169,16 @@ class Decomposer:
             >>> [each.face_id for each in Decomposer()(astronaut(), faces="all")]
             [1]
         """
-        picture = _as_picture(image)
+        applied = apply_profile(_as_picture(image), capture)
+        picture, capture = applied.picture, applied.capture
         name = name or _name_image(image)
-        known = {} if capture is None else make_capture_inputs(capture, self.encoder)
+        known, notes = join_captures(picture, capture, self.encoder)
+        picture = replace(picture, notes=(*picture.notes, *notes))
         subjects = find_subjects(picture.srgb, name, faces, "skin" if whole_image else region)
+        if applied.profile is not None:
+            subjects = [self._doubt_profile(applied, each, name, known) for each in subjects]
         read = [self._decompose(picture, subject, name, detail, known) for subject in subjects]
+        read = [applied.restore(each) for each in read]
         return read[0] if faces is None else read
 
     def edit(
@@ -266,11 +276,12 @@ class Decomposer:
         """
         factors = {"melanin": melanin, "hemoglobin": hemoglobin}
         _check_factors(**factors)
-        known = {} if capture is None else make_capture_inputs(capture, self.encoder)
+        picture, capture, _, _ = apply_profile(picture, capture, is_read=False)
+        known, capture_notes = join_captures(picture, capture, self.encoder)
         name = name or picture.name
         photo, colour = picture.srgb, picture.as_colour()
         edited = replace(colour, pixels=colour.pixels.copy())
-        notes = list(colour.notes)
+        notes = [*colour.notes, *capture_notes]
         for subject in find_subjects(photo, name, faces, "skin" if whole_image else region):
             notes += self._edit_in_place(edited, photo, subject, factors, name, known)
         return replace(edited, notes=tuple(dict.fromkeys(notes)))
@@ -307,10 +318,20 @@ class Decomposer:
             },
             uncertainty=Uncertainty.from_outputs(encoder_outputs, self.encoder.region_share),
             capture_known=name_known(known),
+            exif=read_shot(picture.metadata.get("exif", b""))._asdict(),
             face_id=subject.face_id,
             faces_found=None if subject.faces is None else len(subject.faces),
             face_parts=None if subject.face is None else find_face_parts(photo, subject.face),
         )
+
+    def _doubt_profile(
+        self, applied: Applied, subject: Subject, name: str, known: Inputs
+    ) -> Subject:
+        """Note that a capture profile does not fit what is seen without it."""
+        linear = {key: value for key, value in known.items() if key == "known_linear"}
+        blind = self._encode(applied.picture.srgb, subject, linear)["white_balance"][0]
+        notes = applied.doubt(subject.describe(name), blind.tolist())
+        return subject._replace(notes=(*subject.notes, *notes))
 
     def _edit_in_place(
         self,
@@ -348,6 +369,11 @@ class Decomposer:
         size = self.encoder.working_size
         cut = subject.crop.cut(photo, size)
         encoder_outputs = self.encoder.run({"image": cut[None], **known})
+        gain = find_gain(cut, encoder_outputs["mask"][0], known)
+        if gain != 1:
+            cut = subject.crop.cut(brighten(photo, gain), size)
+            inputs: dict[str, Any] = {"image": cut[None], **shift_exposure(known, gain)}
+            encoder_outputs = scale_back(self.encoder.run(inputs), gain)
         outputs = subject.crop.turn_back(encoder_outputs, size)
         return outputs | {"mask": subject.keep_own_skin(outputs["mask"][0])[None]}
 

@@ -1,7 +1,7 @@
 """The result for one photograph: maps, light, camera, and their summary."""
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from functools import cached_property
 from typing import Any
 
@@ -16,6 +16,7 @@ from skinnet.images.faces._face_parts import FaceParts, FaceRegion
 from skinnet.images.faces._face_regions import REGION_NAMES
 from skinnet.images.faces._outlines import Patch
 from skinnet.images.resizing import resize
+from skinnet.inference._index_summary import SkinIndices
 from skinnet.inference._regions import Pigment, RegionSummary, summarise_region
 from skinnet.inference._uncertainty import (
     LEVEL,
@@ -26,6 +27,7 @@ from skinnet.inference._uncertainty import (
     find_interval,
     summarise_mean,
 )
+from skinnet.inference.indices import _find_indices
 from skinnet.inference.onnx_model import OutputInfo
 
 SKIN_THRESHOLD = 0.5
@@ -79,7 +81,10 @@ class Decomposition:
         tilt: Angle in degrees by which the head is turned clockwise; None if no face was looked
             for.
         pixels_read: Number of pixels in the box that were read; None for all of them.
-        capture_known: Names of the parts of the capture that were given, such as "white_balance".
+        capture_known: Names of the parts of the capture that were given, such as "white_balance",
+            or that a RAW file tells.
+        exif: What EXIF states of the shot: `camera`, `flash` (whether it fired), `white_balance`
+            (auto or manual) and `light_source`; None is what it does not state.
 
     Example:
         >>> from skimage.data import astronaut
@@ -109,6 +114,7 @@ class Decomposition:
     tilt: float | None = None
     pixels_read: int | None = None
     capture_known: tuple[str, ...] = ()
+    exif: Mapping[str, Any] = field(default_factory=dict)
 
     def __repr__(self) -> str:
         height, width = self.mask.shape
@@ -178,6 +184,34 @@ class Decomposition:
             name: find_interval(mean, self._log_sds[name], self._find_top(name), level)
             for name, mean in self.means.items()
         }
+
+    def indices(self, level: float = LEVEL) -> SkinIndices | None:
+        """Compute colour, typology angle, instrument indices and nearest tone of the mean skin.
+
+        They are those of skin with the mean pigments; `compute_indices` says how the intervals are
+        found. Those of parts of the face are in `regions`.
+
+        Args:
+            level: Probability that a true number lies in its interval, between 0 and 1.
+
+        Returns:
+            The indices; None if there is no skin, or if the model's fractions do not belong to the
+            preset `measured`.
+
+        Raises:
+            InputError: The level is no such probability.
+
+        Example:
+            >>> from skimage.data import astronaut
+            >>> from skinnet import Decomposer
+            >>> indices = Decomposer(threads=1)(astronaut()).indices()
+            >>> low, high = indices.typology_angle.interval
+            >>> low < indices.typology_angle.value < high
+            True
+        """
+        find_factor(0.0, level)  # refuses a level also where there is no skin
+        means = self.means.get("melanin"), self.means.get("hemoglobin")
+        return _find_indices(self.model.get("optics"), means, self.uncertainty.face, level)
 
     @property
     def landmarks(self) -> NDArray[np.float32] | None:
@@ -296,11 +330,16 @@ class Decomposition:
             `known_from`), `notes`, `box`, `skin_share` (share of skin in what
             was read), `tilt` (degrees; None without a face), `maps` (`unit`, `mean`, `std`, `p5`
             and `p95` of each; None where there is no skin), `pigments` (`mean` of `melanin` and
-            `hemoglobin` with its `sd` and the `interval` of the probability `level`),
+            `hemoglobin` with its `sd` and the `interval` of the probability `level`), `indices`
+            (`l_star`, `a_star`, `b_star`, `typology_angle`, `melanin_index` and `erythema_index`
+            with `value`, `sd` and 90 % `interval`, `typology_group`, and `monk_tone` with `value`,
+            `interval` and `delta_e`; None as in `indices`),
             `regions` (of each `melanin` and `hemoglobin` with `mean`, `std`, `median`, `sd` and
-            `interval`, which are None where it is hidden, `share` and `pixels`), `landmarks` (a
+            `interval`, which are None where it is hidden, `share`, `pixels` and `indices`),
+            `landmarks` (a
             list of [x, y] to a tenth of a pixel; None without a face), `light`, `camera`,
-            `capture_known` (what was given of them), `version` and `model`.
+            `capture_known` (what was given of them, or a RAW file tells), `exif` (what EXIF states
+            of the shot), `version` and `model`.
         """
         skin = self.mask > SKIN_THRESHOLD
         height, width = skin.shape
@@ -322,11 +361,13 @@ class Decomposition:
                 for name in names
             },
             "pigments": {name: self._summarise_pigment(name) for name in PIGMENTS},
+            "indices": None if (indices := self.indices()) is None else indices.to_json(),
             "regions": {name: region.to_json() for name, region in self.regions.items()},
             "landmarks": None if self.landmarks is None else _round_points(self.landmarks),
             "light": _round_all(self.light),
             "camera": _round_all(self.camera),
             "capture_known": list(self.capture_known),
+            "exif": dict(self.exif),
             "version": __version__,
             "model": self.model,
         }
@@ -342,7 +383,8 @@ class Decomposition:
             Pigment(getattr(self, name)[box.slices], log_sd, self._find_top(name))
             for name, log_sd in zip(PIGMENTS, log_sds, strict=True)
         )
-        return summarise_region(region, read, melanin, hemoglobin)
+        optics = self.model.get("optics")
+        return summarise_region(region, read, melanin, hemoglobin, optics)
 
     @property
     def _log_sds(self) -> dict[str, float]:

@@ -18,7 +18,13 @@ from benchmarks.reader import NetworkReader
 from benchmarks.repeated_faces import RepeatedFaces, render_changed
 from benchmarks.second_source import DEGRADATIONS, degrade
 from benchmarks.skin_readings import SkinReading, compute_angles
-from benchmarks.synthetic_constancy import fuse
+from benchmarks.synthetic_constancy import (
+    correlate_errors,
+    fuse,
+    fuse_people,
+    measure_coverage,
+    score_fused,
+)
 from benchmarks.white_balances import balance_to_grey
 from skinnet.images import resize, srgb_to_linear
 from skinnet.network import SkinAutoencoder
@@ -66,6 +72,27 @@ def test_precise_shots_count_more() -> None:
     fused = np.exp(fuse(SkinReading(pigments, sd, {})))
     assert fused[0] == pytest.approx([0.1, 0.2], rel=0.02)
     assert fused[1] == pytest.approx([0.1, 0.1])
+
+
+def test_people_are_fused_with_intervals_that_cover() -> None:
+    rng = np.random.default_rng(0)
+    truth = np.log(0.05) + 0.5 * rng.standard_normal((4000, 2))
+    sd = np.full((4000, 5, 2), 0.2)
+    shared = np.sqrt([0.45, 0.65]) * rng.standard_normal((4000, 1, 2))
+    own = np.sqrt([0.55, 0.35]) * rng.standard_normal((4000, 5, 2))
+    reading = SkinReading(truth[:, None] + sd * (shared + own), sd, {})
+    colours = rng.uniform(-9, 9, (4000, 5, 2))
+    for index, (fused, correlation) in enumerate(
+        zip(fuse_people(reading, colours), (0.45, 0.65), strict=True)
+    ):
+        assert fused.value == pytest.approx(fuse(reading)[:, index])
+        assert 0.89 < measure_coverage(fused, truth[:, index]) < 0.95
+        found = correlate_errors(reading.pigments[..., index], sd[..., index], truth[:, index])
+        assert found == pytest.approx(correlation, abs=0.03)
+    scores = score_fused(reading, colours, truth)
+    assert scores["melanin"]["r_log"] > 0.9 and 0.89 < scores["melanin"]["coverage"] < 0.95
+    together = fuse_people(reading, np.zeros((4000, 5, 2)))
+    assert (together[0].sd >= 0.2 - 1e-9).all()
 
 
 def test_the_spread_within_people_ignores_that_between_them() -> None:
@@ -169,3 +196,4 @@ def test_the_results_have_the_agreed_keys(tmp_path: Path) -> None:
     assert set(found["guards"]) == {"grey", "slope", "slope_by_fourth", "slope_synthetic"}
     assert set(found["captures"]) == {"pairs", "wide"}
     assert set(found["synthetic"]) == {"pairs", "single", "fused2"}
+    assert {"coverage", "error_correlation"} < set(found["synthetic"]["fused2"]["melanin"])

@@ -374,5 +374,7 @@ def test_raw_files_that_are_tiff_inside_are_refused(tmp_path: Path, kind: str) -
     pixels = to_uint8(SKIN)
     path = tmp_path / "a.tif"
     tifffile.imwrite(path, pixels[..., 0] if kind == "a mosaic" else pixels, **RAW_FILES[kind])
-    with pytest.raises(InputError, match=r"a\.tif is (a RAW file, .*develop it|not a picture)"):
+    with pytest.raises(
+        InputError, match=r"a\.tif is (a RAW file( that|,) .*develop it|not a picture)"
+    ):
         read_picture(path)

@@ -30,9 +30,10 @@ BY_ENDING = ("plain.nef", "unknown.arw")
 
 
 @pytest.fixture
-def no_heif(monkeypatch: pytest.MonkeyPatch) -> None:
-    """The reader of HEIC is not installed."""
-    monkeypatch.setitem(__import__("sys").modules, "pillow_heif", None)
+def no_extras(monkeypatch: pytest.MonkeyPatch) -> None:
+    """The readers of HEIC and of RAW files are not installed."""
+    for package in ("pillow_heif", "rawpy"):
+        monkeypatch.setitem(__import__("sys").modules, package, None)
     monkeypatch.setattr("skinnet.images._kind.find_spec", lambda name: None)
 
 
@@ -71,7 +72,7 @@ def test_heic_is_read_with_its_extra(run: Run, tmp_path: Path, name: str) -> Non
 
 
 @pytest.mark.parametrize("name", ["a.heic", "a.jpg", "a"])
-@pytest.mark.usefixtures("no_heif")
+@pytest.mark.usefixtures("no_extras")
 def test_heic_without_its_extra_names_it(run: Run, tmp_path: Path, name: str) -> None:
     heic = KINDS["HEIC picture"]["a.heic"]
     save(tmp_path / "g" / "b.png")
@@ -84,7 +85,7 @@ def test_heic_without_its_extra_names_it(run: Run, tmp_path: Path, name: str) ->
 
 
 @pytest.mark.parametrize("kind", KINDS)
-@pytest.mark.usefixtures("no_heif")
+@pytest.mark.usefixtures("no_extras")
 def test_other_kinds_are_passed_over_by_name(run: Run, tmp_path: Path, kind: str) -> None:
     save(tmp_path / "g" / "photo.png")
     for name, content in KINDS[kind].items():
@@ -100,7 +101,7 @@ def test_other_kinds_are_passed_over_by_name(run: Run, tmp_path: Path, kind: str
 @pytest.mark.parametrize(
     ("kind", "name"), [(kind, name) for kind, files in KINDS.items() for name in files]
 )
-@pytest.mark.usefixtures("no_heif")
+@pytest.mark.usefixtures("no_extras")
 def test_other_kinds_are_refused_where_they_are_named(
     run: Run, tmp_path: Path, kind: str, name: str
 ) -> None:
@@ -413,6 +414,7 @@ def test_pages_of_reduced_size_are_no_pictures(tmp_path: Path) -> None:
     np.testing.assert_array_equal(read_picture(path).srgb, first)
 
 
+@pytest.mark.usefixtures("no_extras")
 def test_the_end_of_a_run_counts(run: Run, tmp_path: Path) -> None:
     folder = tmp_path / "g"
     for name, colour in (("a.png", SKIN), ("b", DARK), ("wall.png", WALL)):

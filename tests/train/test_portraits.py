@@ -1,6 +1,7 @@
 """Photographs as training data."""
 
 import csv
+import sys
 from functools import partial
 from pathlib import Path
 from typing import Any
@@ -88,8 +89,9 @@ def test_more_unreadable_pictures_than_the_share_are_refused(tmp_path: Path) -> 
 
 
 def test_files_of_other_kinds_are_passed_over_and_listed(
-    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+    tmp_path: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
 ) -> None:
+    monkeypatch.setitem(sys.modules, "rawpy", None)
     face = Image.fromarray(astronaut())
     (tmp_path / "deep" / "skinmaps").mkdir(parents=True)
     for name in ("a.jfif", "deep/b", "deep/c.JPG_large"):
@@ -111,7 +113,8 @@ def test_files_of_other_kinds_are_passed_over_and_listed(
     assert reasons == {
         "a_edited.jpg": "It is a result of skinnet; give the photograph itself.",
         "a_reconstruction.png": "It is a result of skinnet; give the photograph itself.",
-        "raw.nef": "It is a RAW file; develop it, and save it as 16-bit TIFF or JPEG.",
+        "raw.nef": 'It is a RAW file; pip install "skinnet[raw]" reads it; or develop it, and save '
+        "it as 16-bit TIFF or JPEG.",
         "\\udcff.txt": "It is another file; give a JPEG, PNG, TIFF or WebP file.",
     }
     count = capsys.readouterr().err.splitlines()[-1]

@@ -1,4 +1,5 @@
 import io
+import sys
 
 import pytest
 from other_files import KINDS, RAW, directory, tiff
@@ -58,7 +59,16 @@ def test_the_content_comes_before_the_ending() -> None:
     assert look(tiff([(262, 4, 2)]), "a.tif") is PICTURE
     assert look(tiff([(262, 4, 2)]), "a.NEF") is RAW_KIND
     assert look(b"what is this", "a.arw") is RAW_KIND
-    assert not is_readable(RAW_KIND)
+
+
+@pytest.mark.parametrize(("kind", "package"), [(HEIF, "pillow_heif"), (RAW_KIND, "rawpy")])
+def test_an_extra_makes_kinds_readable(
+    kind: Kind, package: str, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    assert is_readable(PICTURE) and not is_readable(OTHER)
+    assert is_readable(kind)
+    monkeypatch.setitem(sys.modules, package, None)
+    assert not is_readable(kind)
 
 
 @pytest.mark.parametrize("order", ["<", ">"])

@@ -65,7 +65,10 @@ def test_none_and_nan_are_not_known(capture: Capture, encoder: OnnxModel) -> Non
 @pytest.mark.parametrize(
     ("capture", "sentence"),
     [
-        (Capture({"d": 1}), r"no light of the name 'd'; D may be meant. The lights are D, A, FL2"),
+        (
+            Capture({"dd": 1}),
+            r"no light of the name 'dd'; D may be meant. The lights are D, A, FL2",
+        ),
         (Capture({"ledb3": 1}), "LED-B3 may be meant"),
         (Capture({"xyz": 1}), "no light of the name 'xyz'. The lights are"),
         (Capture([0.5, 0.5]), "light of a capture has 9 values; got 2"),

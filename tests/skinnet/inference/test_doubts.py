@@ -23,7 +23,7 @@ def test_melanin_is_in_doubt_if_its_interval_spans_a_factor_of_3(span: float, no
     if noted:
         assert notes[0].startswith("Melanin cannot be told well from this photograph: that of the")
         assert "may be 1.8 times higher or lower than what is read" in notes[0]
-        assert "Capture.from_white" in notes[-1] and len(notes) == 2
+        assert "--white X,Y" in notes[-1] and len(notes) == 2
 
 
 @pytest.mark.parametrize(("span", "noted"), [(4.9, False), (5.1, True)])

@@ -72,7 +72,7 @@ def test_the_summary_has_regions_and_landmarks(decomposition: Decomposition) -> 
     np.testing.assert_allclose(summary["landmarks"], landmarks, atol=0.051)
     for name, region in decomposition.regions.items():
         numbers = summary["regions"][name]
-        assert set(numbers) == {"melanin", "hemoglobin", "share", "pixels"}
+        assert set(numbers) == {"melanin", "hemoglobin", "share", "pixels", "indices"}
         assert numbers["pixels"] == region.pixels == decomposition.region_mask(name).sum()
         skin = decomposition.region_mask(name)
         assert not (skin & (decomposition.mask <= 0.5)).any()

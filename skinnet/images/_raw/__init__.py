@@ -1,0 +1,1 @@
+"""RAW files of cameras, developed to linear light."""

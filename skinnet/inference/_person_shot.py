@@ -1,0 +1,88 @@
+"""What is kept of a decomposed photograph when shots of one person are fused."""
+
+from typing import Any, NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from skinnet.images.faces._face_regions import REGION_NAMES
+from skinnet.images.srgb import srgb_to_linear
+from skinnet.inference._uncertainty import PIGMENTS
+from skinnet.inference.decomposition import SKIN_THRESHOLD, Decomposition
+
+Array = NDArray[np.float64]
+
+_MOST_PIXELS = 1 << 18
+"""Of larger photographs, every second pixel is looked at, or every third, and so on."""
+
+
+class PersonShot(NamedTuple):
+    """One shot of a person: a few numbers, since the maps of many shots need much memory.
+
+    Attributes:
+        name: What messages call it.
+        log_means: Natural logarithms of the mean melanin and hemoglobin, of the whole skin in the
+            first row and then of each region, [1 + regions, 2]; NaN where it is hidden.
+        log_sds: Their standard deviations, [1 + regions, 2].
+        chromaticity: Log R/G and log B/G of the skin's mean colour in linear sRGB, [2].
+        tops: Largest fractions of melanin and hemoglobin.
+        has_face: Whether a face was looked for, so that there are regions.
+        model: The model that has read it.
+        capture_known: Names of what was given of its capture.
+        notes: Sentences on it that the user should read.
+    """
+
+    name: str
+    log_means: Array
+    log_sds: Array
+    chromaticity: Array
+    tops: tuple[float, float]
+    has_face: bool
+    model: dict[str, str]
+    capture_known: tuple[str, ...] = ()
+    notes: tuple[str, ...] = ()
+
+    @property
+    def has_skin(self) -> bool:
+        """Whether any skin was found."""
+        return bool(np.isfinite(self.log_means[0]).all())
+
+
+def describe_shot(decomposition: Decomposition, name: str) -> PersonShot:
+    """Keep of a decomposition what is fused."""
+    face = [(decomposition.means.get(each), None) for each in PIGMENTS]
+    regions = decomposition.regions
+    places = [face] + [
+        [(getattr(regions[each], name).mean, getattr(regions[each], name).sd) for name in PIGMENTS]
+        if each in regions
+        else [(None, None)] * 2
+        for each in REGION_NAMES
+    ]
+    means, sds = np.moveaxis(np.array(places, float), -1, 0)
+    with np.errstate(divide="ignore"):  # of a mean of 0 the logarithm is not finite: not read
+        log_means = np.log(means)
+    log_sds = sds / means
+    log_sds[0] = decomposition.uncertainty.face
+    melanin, hemoglobin = (decomposition.output_info[each].range[1] for each in PIGMENTS)
+    return PersonShot(
+        name,
+        np.where(np.isfinite(log_means), log_means, np.nan),
+        log_sds,
+        _find_chromaticity(decomposition),
+        (melanin, hemoglobin),
+        bool(regions),
+        decomposition.model,
+        decomposition.capture_known,
+        decomposition.notes,
+    )
+
+
+def _find_chromaticity(decomposition: Decomposition) -> Array:
+    """Log R/G and log B/G of the skin in the photograph, as the model explains it; NaN without."""
+    step = max(1, int(np.sqrt(decomposition.mask.size / _MOST_PIXELS)))
+    skin = decomposition.mask[::step, ::step] > SKIN_THRESHOLD
+    if not skin.any():
+        return np.full(2, np.nan)
+    colours: NDArray[Any] = srgb_to_linear(decomposition.reconstruction[::step, ::step][skin])
+    red, green, blue = np.log(np.maximum(colours.mean(0, dtype=float), 1e-4))
+    return np.array([red - green, blue - green])
