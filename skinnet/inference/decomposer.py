@@ -175,8 +175,8 @@ class Decomposer:
         known, notes = join_captures(picture, capture, self.encoder)
         picture = replace(picture, notes=(*picture.notes, *notes))
         subjects = find_subjects(picture.srgb, name, faces, "skin" if whole_image else region)
-        if applied.profile is not None:
-            subjects = [self._doubt_profile(applied, each, name, known) for each in subjects]
+        if "known_white_balance" in known:
+            subjects = [self._doubt_white(applied, each, name, known) for each in subjects]
         read = [self._decompose(picture, subject, name, detail, known) for subject in subjects]
         read = [applied.restore(each) for each in read]
         return read[0] if faces is None else read
@@ -324,13 +324,12 @@ class Decomposer:
             face_parts=None if subject.face is None else find_face_parts(photo, subject.face),
         )
 
-    def _doubt_profile(
-        self, applied: Applied, subject: Subject, name: str, known: Inputs
-    ) -> Subject:
-        """Note that a capture profile does not fit what is seen without it."""
+    def _doubt_white(self, applied: Applied, subject: Subject, name: str, known: Inputs) -> Subject:
+        """Note that a white balance does not fit what is seen without it."""
         linear = {key: value for key, value in known.items() if key == "known_linear"}
         blind = self._encode(applied.picture.srgb, subject, linear)["white_balance"][0]
-        notes = applied.doubt(subject.describe(name), blind.tolist())
+        told = known["known_white_balance"][0].tolist()
+        notes = applied.doubt(subject.describe(name), blind.tolist(), told)
         return subject._replace(notes=(*subject.notes, *notes))
 
     def _edit_in_place(

@@ -8,7 +8,7 @@ import numpy as np
 
 from skinnet.images.picture import Picture
 from skinnet.inference.capture import Capture
-from skinnet.inference.capture_profile import CaptureProfile
+from skinnet.inference.capture_profile import _MOST_BLIND, CaptureProfile, _format
 from skinnet.inference.decomposition import Decomposition
 
 
@@ -27,11 +27,17 @@ class Applied(NamedTuple):
     profile: CaptureProfile | None
     original: Picture
 
-    def doubt(self, who: str, blind: Sequence[float]) -> tuple[str, ...]:
-        """Note that the profile does not fit what is seen without it."""
-        if self.profile is None or not isinstance(self.capture, Capture):
+    def doubt(self, who: str, blind: Sequence[float], told: Sequence[float]) -> tuple[str, ...]:
+        """Note that the white balance that is told does not fit what is seen without it."""
+        if self.profile is not None and isinstance(self.capture, Capture):
+            return self.profile.doubt(who, blind, self.capture)
+        if not float(np.abs(np.subtract(blind, told)).max()) > _MOST_BLIND:
             return ()
-        return self.profile.doubt(who, blind, self.capture)
+        return (
+            f"The white balance that was given for {who} is far from what is seen without it: log "
+            f"R/G and log B/G are {_format(told)}, and not {_format(blind)}. Is the "
+            "reference white or grey, and lit as the face is?",
+        )
 
     def restore(self, decomposition: Decomposition) -> Decomposition:
         """Give the reconstruction the photograph's tones."""

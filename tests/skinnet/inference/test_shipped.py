@@ -10,7 +10,7 @@ from skimage.data import astronaut
 
 from skinnet import Decomposer, Decomposition
 from skinnet.images import srgb_to_linear
-from skinnet.inference import CAPTURE_NAMES, MAP_NAMES, SHIPPED_ENCODER
+from skinnet.inference import CAPTURE_NAMES, MAP_NAMES, SHIPPED_ENCODER, Capture
 from skinnet.network import SkinAutoencoder
 from skinnet.physics import to_display
 
@@ -94,3 +94,12 @@ def test_the_shipped_files_are_in_the_package() -> None:
     names = {path.name for path in SHIPPED_ENCODER.parent.iterdir()}
     files = {"skin.onnx", "skin.decoder.onnx", "skin.safetensors"}
     assert names == files | {"MODEL_CARD.md", "CHANGELOG.md"}
+
+
+def test_a_coloured_thing_that_is_given_as_white_has_a_note() -> None:
+    blue, grey = (
+        Decomposer()(astronaut(), detail=False, capture=Capture.from_white(colour)).notes
+        for colour in ((120, 160, 220), (200, 190, 170))
+    )
+    assert any("is far from what is seen without it" in note for note in blue)
+    assert not grey
