@@ -71,7 +71,7 @@ def test_the_astronaut_is_edited_at_every_tilt(decomposer: Decomposer, degrees: 
     ]
     back = turn_back(changes[1], degrees, photo.shape)
     assert np.corrcoef(back.ravel(), changes[0].ravel())[0, 1] > 0.93
-    assert back.min() < -40
+    assert back.min() < -35
 
 
 @pytest.mark.slow

@@ -54,7 +54,7 @@ def test_a_face_is_read_as_the_network_is_trained(
     }
     assert read.summary()["exif"] == read.exif
     told = shipped(astronaut, detail=False, capture=Capture(camera=NIKON, linear=True))
-    assert read.means == pytest.approx(told.means, rel=0.05)
+    assert read.means == pytest.approx(told.means, rel=0.08)
 
 
 def test_what_is_given_comes_first(shipped: Decomposer, raw_file: Path) -> None:

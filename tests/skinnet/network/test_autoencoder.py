@@ -57,7 +57,7 @@ def test_activations_stay_in_their_ranges(raw: float) -> None:
     raw_maps = torch.full((1, _MAP_CHANNELS, 2, 2), raw)
     raw_values = torch.full((1, _GLOBAL_CHANNELS), raw)
     maps, capture = _activate(raw_maps, white), _activate_capture(raw_values, WHITE_BALANCE_MAX)
-    spread = _activate_uncertainty(raw_maps, raw_values, torch.ones(2, 2))
+    spread = _activate_uncertainty(raw_maps, raw_values, torch.ones(2, 2, 1))
     low_sd, high_sd = LOG_SD_RANGE[0] * (1 - 1e-5), LOG_SD_RANGE[1] * (1 + 1e-5)
     for value, low, high in (
         (maps.melanin, 0, F_MEL_MAX),
