@@ -118,14 +118,16 @@ class KnownCapture(nn.Module):
     def describe(self, known: Capture) -> Float[Tensor, "batch known_values"]:
         """Describe captures by values and flags of about unit size."""
         assert known.linear is not None and known.exposure is not None
-        parts = (known.light, known.temperature, known.camera, known.white_balance, known.exposure)
-        # Filled before they become columns: tools that quantise the network expect no NaN.
-        unknown = [_as_columns(part.isnan()).any(-1, keepdim=True) for part in parts]
-        light, temperature, camera, balance, exposure = (_as_columns(_fill(one)) for one in parts)
+        columns = (
+            *(known.light, known.temperature[:, None], known.camera),
+            *(known.white_balance, known.exposure[:, None]),
+        )
+        unknown = [column.isnan().any(-1, keepdim=True) for column in columns]
+        light, temperature, camera, balance, exposure = map(_fill, columns)
         mired = 1e6 / (temperature + 1e6 / _MIRED * unknown[1])
-        scaled = (light, (mired - _MIRED) / _MIRED_SPREAD, camera, 5 * balance, exposure)
+        parts = (light, (mired - _MIRED) / _MIRED_SPREAD, camera, 5 * balance, exposure)
         flags = [(~each).to(balance) for each in unknown]
-        values = [part * flag for part, flag in zip(scaled, flags, strict=True)]
+        values = [part * flag for part, flag in zip(parts, flags, strict=True)]
         return torch.cat([*values, *flags, _fill(known.linear)[:, None]], -1)
 
     def adopt(self, known: Capture, estimate: Capture) -> Capture:
@@ -147,10 +149,6 @@ class KnownCapture(nn.Module):
 def _fill(part: Tensor) -> Tensor:
     """Replace what is missing by 0; exported, this is shorter than `nan_to_num`."""
     return part.masked_fill(part.isnan(), 0)
-
-
-def _as_columns(part: Tensor) -> Tensor:
-    return part[:, None] if part.ndim == 1 else part
 
 
 def _white(camera: SpectralCamera, gain: Float[Tensor, "3"]) -> Float[Tensor, "3"]:
