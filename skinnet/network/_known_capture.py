@@ -118,13 +118,14 @@ class KnownCapture(nn.Module):
     def describe(self, known: Capture) -> Float[Tensor, "batch known_values"]:
         """Describe captures by values and flags of about unit size."""
         assert known.linear is not None and known.exposure is not None
-        columns = (
-            *(known.light, known.temperature[:, None], known.camera),
-            *(known.white_balance, known.exposure[:, None]),
-        )
-        unknown = [column.isnan().any(-1, keepdim=True) for column in columns]
-        light, temperature, camera, balance, exposure = map(_fill, columns)
-        mired = 1e6 / (temperature + 1e6 / _MIRED * unknown[1])
+        # Filled before they become columns: tools that quantise the network warn of columns of NaN.
+        light, temperature, camera, balance = map(_fill, known[:4])
+        vectors = (known.light, known.camera, known.white_balance)
+        unknown = [part.isnan().any(-1, keepdim=True) for part in vectors]
+        unknown.insert(1, known.temperature.isnan()[:, None])
+        unknown.append(known.exposure.isnan()[:, None])
+        mired = 1e6 / (temperature[:, None] + 1e6 / _MIRED * unknown[1])
+        exposure = _fill(known.exposure)[:, None]
         parts = (light, (mired - _MIRED) / _MIRED_SPREAD, camera, 5 * balance, exposure)
         flags = [(~each).to(balance) for each in unknown]
         values = [part * flag for part, flag in zip(parts, flags, strict=True)]

@@ -116,7 +116,6 @@ def test_preparation_keeps_the_free_axes_and_the_bits(
             assert np.array_equal(after.run(feed)[name], value), name
 
 
-@pytest.mark.filterwarnings("ignore:All-NaN axis")  # of what is not known of a capture
 @pytest.mark.parametrize("kind", FILES)
 @pytest.mark.parametrize("way", WAYS)
 def test_a_file_is_quantised_and_opens(
