@@ -1,19 +1,15 @@
 """What is kept of a decomposed photograph when shots of one person are fused."""
 
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
 from skinnet.images.faces._face_regions import REGION_NAMES
-from skinnet.images.srgb import srgb_to_linear
 from skinnet.inference._uncertainty import PIGMENTS
-from skinnet.inference.decomposition import SKIN_THRESHOLD, Decomposition
+from skinnet.inference.decomposition import Decomposition
 
 Array = NDArray[np.float64]
-
-_MOST_PIXELS = 1 << 18
-"""Of larger photographs, every second pixel is looked at, or every third, and so on."""
 
 
 class PersonShot(NamedTuple):
@@ -24,7 +20,8 @@ class PersonShot(NamedTuple):
         log_means: Natural logarithms of the mean melanin and hemoglobin, of the whole skin in the
             first row and then of each region, [1 + regions, 2]; NaN where it is hidden.
         log_sds: Their standard deviations, [1 + regions, 2].
-        chromaticity: Log R/G and log B/G of the skin's mean colour in linear sRGB, [2].
+        chromaticity: Log R/G and log B/G of the skin's mean colour in linear sRGB, [2]; NaN if it
+            is not known.
         tops: Largest fractions of melanin and hemoglobin.
         has_face: Whether a face was looked for, so that there are regions.
         model: The model that has read it.
@@ -68,21 +65,10 @@ def describe_shot(decomposition: Decomposition, name: str) -> PersonShot:
         name,
         np.where(np.isfinite(log_means), log_means, np.nan),
         log_sds,
-        _find_chromaticity(decomposition),
+        np.array(decomposition.skin_chromaticity or (np.nan, np.nan)),
         (melanin, hemoglobin),
         bool(regions),
         decomposition.model,
         decomposition.capture_known,
         decomposition.notes,
     )
-
-
-def _find_chromaticity(decomposition: Decomposition) -> Array:
-    """Log R/G and log B/G of the skin in the photograph, as the model explains it; NaN without."""
-    step = max(1, int(np.sqrt(decomposition.mask.size / _MOST_PIXELS)))
-    skin = decomposition.mask[::step, ::step] > SKIN_THRESHOLD
-    if not skin.any():
-        return np.full(2, np.nan)
-    colours: NDArray[Any] = srgb_to_linear(decomposition.reconstruction[::step, ::step][skin])
-    red, green, blue = np.log(np.maximum(colours.mean(0, dtype=float), 1e-4))
-    return np.array([red - green, blue - green])

@@ -31,6 +31,7 @@ from skinnet.inference._face_choice import FaceChoice
 from skinnet.inference._metering import brighten, find_gain, scale_back, shift_exposure
 from skinnet.inference._onnx_pair import get_decoder_path, refuse_other_export
 from skinnet.inference._references.profile_use import Applied, apply_profile
+from skinnet.inference._skin_chromaticity import measure_chromaticity
 from skinnet.inference._skin_mask import adopt_mask, find_skin
 from skinnet.inference._subject import Region, Subject, find_subjects
 from skinnet.inference._transparency import note_transparency
@@ -319,6 +320,7 @@ class Decomposer:
             uncertainty=Uncertainty.from_outputs(encoder_outputs, self.encoder.region_share),
             capture_known=name_known(known),
             exif=read_shot(picture.metadata.get("exif", b""))._asdict(),
+            skin_chromaticity=measure_chromaticity(photo[box.slices], mask),
             face_id=subject.face_id,
             faces_found=None if subject.faces is None else len(subject.faces),
             face_parts=None if subject.face is None else find_face_parts(photo, subject.face),

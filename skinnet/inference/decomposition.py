@@ -85,6 +85,8 @@ class Decomposition:
             or that a RAW file tells.
         exif: What EXIF states of the shot: `camera`, `flash` (whether it fired), `white_balance`
             (auto or manual) and `light_source`; None is what it does not state.
+        skin_chromaticity: Log R/G and log B/G of the mean colour of skin in the photograph, in
+            linear sRGB; None without skin.
 
     Example:
         >>> from skimage.data import astronaut
@@ -115,6 +117,7 @@ class Decomposition:
     pixels_read: int | None = None
     capture_known: tuple[str, ...] = ()
     exif: Mapping[str, Any] = field(default_factory=dict)
+    skin_chromaticity: tuple[float, float] | None = None
 
     def __repr__(self) -> str:
         height, width = self.mask.shape

@@ -54,9 +54,9 @@ def test_mirrored_and_dark_shots_are_of_the_session_and_other_white_balances_are
     person: Person,
 ) -> None:
     plain, warm, cool, mirrored, dark = person.sessions
-    assert plain == mirrored == dark and len({plain, warm, cool}) >= 2
+    assert plain == mirrored == dark and len({plain, warm, cool}) == 3
     (said,) = person.notes
-    assert "they are taken for shots of one session" in said
+    assert "one colour in plain, mirrored and dark: they are taken for shots of one session" in said
 
 
 def test_light_of_another_colour_narrows_and_shots_of_one_session_do_not(
