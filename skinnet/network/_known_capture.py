@@ -21,6 +21,10 @@ _SIZES = (len(LIGHTS), None, CAMERA_COMPONENTS, 2, None, None)
 _WHITE = 0.8
 """Reflectance of the grey spectra among those of skin, which keep neutrals neutral."""
 
+_MOST_TOLD = 0.1
+"""Largest white balance that is described. All of it is divided out of the photograph; the network
+would take more of it for a sign of other skin."""
+
 _RIDGE = 1e-3
 """Weight of no change, for each spectrum."""
 
@@ -126,7 +130,8 @@ class KnownCapture(nn.Module):
         unknown.append(known.exposure.isnan()[:, None])
         mired = 1e6 / (temperature[:, None] + 1e6 / _MIRED * unknown[1])
         exposure = _fill(known.exposure)[:, None]
-        parts = (light, (mired - _MIRED) / _MIRED_SPREAD, camera, 5 * balance, exposure)
+        told = balance.clamp(-_MOST_TOLD, _MOST_TOLD)
+        parts = (light, (mired - _MIRED) / _MIRED_SPREAD, camera, 5 * told, exposure)
         flags = [(~each).to(balance) for each in unknown]
         values = [part * flag for part, flag in zip(parts, flags, strict=True)]
         return torch.cat([*values, *flags, _fill(known.linear)[:, None]], -1)

@@ -106,7 +106,6 @@ def test_lights_are_those_of_the_file(model_file: Path, astronaut: np.ndarray) -
     assert read.summary()["capture_known"] == ["light", "temperature", "white_balance"]
 
 
-@pytest.mark.xfail(reason="The network takes a large known white balance for a sign of other skin.")
 def test_a_known_white_balance_undoes_a_cast(astronaut: np.ndarray) -> None:
     """A photograph in another white balance is read as before if this is said."""
     gain = np.exp([0.35, 0.0, -0.35])
