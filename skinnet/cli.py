@@ -82,9 +82,7 @@ def _run_pipeline(verb: str, arguments: list[str]) -> int:
 def _add_predict(verbs: "argparse._SubParsersAction[argparse.ArgumentParser]") -> None:
     verb = verbs.add_parser("predict", help="make maps, a panel and a summary of photographs")
     _add_inputs(verb)
-    verb.add_argument(
-        "--json", action="store_true", help="print each summary as one line of JSON, nothing else"
-    )
+    _add_json(verb, "each summary")
     verb.add_argument(
         "--csv",
         type=Path,
@@ -110,9 +108,7 @@ def _add_person(verbs: "argparse._SubParsersAction[argparse.ArgumentParser]") ->
         "not all shots could be used.",
     )
     _add_inputs(verb)
-    verb.add_argument(
-        "--json", action="store_true", help="print the summary as one line of JSON, nothing else"
-    )
+    _add_json(verb)
     _add_common(verb)
     verb.set_defaults(run=_person)
 
@@ -126,13 +122,7 @@ def _add_inputs(verb: argparse.ArgumentParser) -> None:
     verb.add_argument(
         "-r", "--recursive", action="store_true", help="search the subfolders of folders too"
     )
-    verb.add_argument(
-        "-o",
-        "--output",
-        type=Path,
-        metavar="DIR",
-        help="folder to write to; by default skinmaps in the photograph's folder",
-    )
+    _add_folder(verb, "the photograph's folder")
 
 
 def _add_edit(verbs: "argparse._SubParsersAction[argparse.ArgumentParser]") -> None:
@@ -206,40 +196,40 @@ def _add_compare(verbs: "argparse._SubParsersAction[argparse.ArgumentParser]") -
     )
     verb.add_argument("before", help="a photograph, or - for standard input")
     verb.add_argument("after", help="another one of the same face, from the same side")
+    _add_folder(verb, "the folder of the first photograph")
+    _add_json(verb)
+    _add_model(verb)
+    _add_told(verb, "the session of both")
+    verb.set_defaults(run=_compare)
+
+
+def _add_json(verb: argparse.ArgumentParser, what: str = "the summary") -> None:
+    verb.add_argument(
+        "--json", action="store_true", help=f"print {what} as one line of JSON, nothing else"
+    )
+
+
+def _add_folder(verb: argparse.ArgumentParser, usual: str) -> None:
     verb.add_argument(
         "-o",
         "--output",
         type=Path,
         metavar="DIR",
-        help="folder to write to; by default skinmaps in the folder of the first photograph",
+        help=f"folder to write to; by default skinmaps in {usual}",
     )
-    verb.add_argument(
-        "--json", action="store_true", help="print the summary as one line of JSON, nothing else"
-    )
+
+
+def _add_model(verb: argparse.ArgumentParser) -> None:
     verb.add_argument(
         "--model",
         type=Path,
         metavar="FILE",
         help="encoder, X.onnx, with X.decoder.onnx in the same folder; by default the shipped one",
     )
-    verb.add_argument(
-        "--capture",
-        type=Path,
-        metavar="FILE.yaml",
-        help="the profile of the session of both, which skinnet capture makes",
-    )
-    _add_references(verb)
-    _add_capture(verb)
-    verb.set_defaults(run=_compare)
 
 
 def _add_common(verb: argparse.ArgumentParser) -> None:
-    verb.add_argument(
-        "--model",
-        type=Path,
-        metavar="FILE",
-        help="encoder, X.onnx, with X.decoder.onnx in the same folder; by default the shipped one",
-    )
+    _add_model(verb)
     verb.add_argument(
         "--faces",
         type=lambda word: int(word) if word.lstrip("-").isdecimal() else word,
@@ -261,18 +251,18 @@ def _add_common(verb: argparse.ArgumentParser) -> None:
         const="skin",
         help="the same as --region skin",
     )
+    _add_told(verb, "the session")
+
+
+def _add_told(verb: argparse.ArgumentParser, session: str) -> None:
+    """Add what may be known of the light and the camera."""
     verb.add_argument(
         "--capture",
         type=Path,
         metavar="FILE.yaml",
-        help="the profile of the session, which skinnet capture makes",
+        help=f"the profile of {session}, which skinnet capture makes",
     )
     _add_references(verb)
-    _add_capture(verb)
-
-
-def _add_capture(verb: argparse.ArgumentParser) -> None:
-    """Add what may be known of the light and the camera."""
     known = verb.add_argument_group("what is known of the light and the camera")
     known.add_argument(
         "--camera",

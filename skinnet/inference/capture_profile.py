@@ -13,7 +13,6 @@ from skinnet.files import write_text
 from skinnet.images.photograph import read_picture
 from skinnet.images.picture import Picture
 from skinnet.inference._references.chart import CLASSIC, load_chart
-from skinnet.inference._references.chart_reading import read_chart
 from skinnet.inference._references.linearisation import linearise, restore_tones
 from skinnet.inference._references.profile_text import ProfileContent, format_profile, parse_profile
 from skinnet.inference._references.shot_settings import ShotSettings, read_settings
@@ -90,6 +89,9 @@ class CaptureProfile:
             InputError: The picture cannot be read; the chart is not found, cut, overexposed, too
                 dark, not in one light, or another one; or the extra `chart` is not installed.
         """
+        # Not at start-up: fits take scipy.optimize, and most photographs come without a chart.
+        from skinnet.inference._references.chart_reading import read_chart
+
         picture = _as_picture(image)
         reading = read_chart(picture, load_chart(chart))
         plain = reading.tone == ToneCurve()
