@@ -12,6 +12,12 @@ from skinnet.errors import InputError
 from skinnet.files import write_text
 from skinnet.images.photograph import read_picture
 from skinnet.images.picture import Picture
+from skinnet.inference._references.balances import (
+    MOST_APART,
+    MOST_BLIND,
+    format_balance,
+    is_apart,
+)
 from skinnet.inference._references.chart import CLASSIC, load_chart
 from skinnet.inference._references.linearisation import linearise, restore_tones
 from skinnet.inference._references.profile_text import ProfileContent, format_profile, parse_profile
@@ -24,13 +30,6 @@ _RAW = "RAW"
 
 _MOST_STOPS = 0.1
 """Difference of exposure, in stops, from which the exposure of a profile does not hold."""
-
-_MOST_APART = 0.12
-"""Difference of log R/G or log B/G of a picture's own reference from a profile that is noted."""
-
-_MOST_BLIND = 0.3
-"""The same between what is read of a face without a profile, and the profile; portraits without one
-are within 0.15."""
 
 
 @dataclass(frozen=True)
@@ -299,15 +298,13 @@ class CaptureProfile:
         Returns:
             A sentence, or none.
         """
-        if known.white_balance is None:
+        if known.white_balance is None or not is_apart(blind, known.white_balance, MOST_BLIND):
             return ()
-        apart = np.subtract(blind, known.white_balance)
-        if float(np.abs(apart).max()) <= _MOST_BLIND:
-            return ()
+        told, seen = format_balance(known.white_balance), format_balance(blind)
         return (
             f"The capture profile ({self.source[0]}) seems to be from another light or white "
-            f"balance than {who}: its log R/G and log B/G are {_format(known.white_balance)}, and "
-            f"what is seen without it {_format(blind)}. Make a profile in this light.",
+            f"balance than {who}: its log R/G and log B/G are {told}, and what is seen without it "
+            f"{seen}. Make a profile in this light.",
         )
 
     def compare(self, own: Any, who: str) -> tuple[str, ...]:
@@ -320,15 +317,13 @@ class CaptureProfile:
         Returns:
             A sentence, or none.
         """
-        if self.white_balance is None:
+        if self.white_balance is None or not is_apart(own, self.white_balance, MOST_APART):
             return ()
-        apart = np.subtract(own, self.white_balance)
-        if float(np.abs(apart).max()) <= _MOST_APART:
-            return ()
+        seen, told = format_balance(own), format_balance(self.white_balance)
         return (
-            f"{who} has log R/G and log B/G of {_format(own)}, and the capture profile "
-            f"({self.source[0]}) {_format(self.white_balance)}: it is from another light or white "
-            "balance. The reference in the picture is used.",
+            f"{who} has log R/G and log B/G of {seen}, and the capture profile ({self.source[0]}) "
+            f"{told}: it is from another light or white balance. The reference in the picture is "
+            "used.",
         )
 
     def _leave_out_exposure(self) -> "CaptureProfile":
@@ -354,7 +349,3 @@ def _round(capture: Capture) -> Capture:
         if parts[name] is not None:
             parts[name] = round(float(parts[name]), digits)
     return Capture(**parts)
-
-
-def _format(balance: Sequence[float] | NDArray[Any]) -> str:
-    return ", ".join(f"{one:.2f}" for one in balance)

@@ -7,8 +7,9 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from skinnet.images.picture import Picture
+from skinnet.inference._references.balances import MOST_BLIND, format_balance, is_apart
 from skinnet.inference.capture import Capture
-from skinnet.inference.capture_profile import _MOST_BLIND, CaptureProfile, _format
+from skinnet.inference.capture_profile import CaptureProfile
 from skinnet.inference.decomposition import Decomposition
 
 
@@ -31,11 +32,11 @@ class Applied(NamedTuple):
         """Note that the white balance that is told does not fit what is seen without it."""
         if self.profile is not None and isinstance(self.capture, Capture):
             return self.profile.doubt(who, blind, self.capture)
-        if not float(np.abs(np.subtract(blind, told)).max()) > _MOST_BLIND:
+        if not is_apart(blind, told, MOST_BLIND):
             return ()
         return (
             f"The white balance that was given for {who} is far from what is seen without it: log "
-            f"R/G and log B/G are {_format(told)}, and not {_format(blind)}. Is the "
+            f"R/G and log B/G are {format_balance(told)}, and not {format_balance(blind)}. Is the "
             "reference white or grey, and lit as the face is?",
         )
 
