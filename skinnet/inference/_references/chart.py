@@ -108,6 +108,8 @@ def _read_csv(path: Path) -> Chart:
     try:
         with path.open(newline="", encoding="utf-8-sig") as file:
             lines = [line for line in file if line.strip() and not line.startswith("#")]
+    except FileNotFoundError:
+        raise InputError(f"There is no chart {path}; give classic, or a CSV file.") from None
     except (OSError, UnicodeDecodeError) as error:
         raise InputError(f"The chart {path} cannot be read ({error}); check the path.") from error
     head, *rows = list(csv.reader(lines)) or [[]]

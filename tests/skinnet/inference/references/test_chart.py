@@ -74,3 +74,8 @@ def test_percent_is_refused(tmp_path: Path, classic: Chart) -> None:
 def test_a_chart_that_is_not_there_is_named(name: str) -> None:
     with pytest.raises(InputError, match=name):
         load_chart(name)
+
+
+def test_a_missing_chart_is_named(tmp_path: Path) -> None:
+    with pytest.raises(InputError, match=r"There is no chart .*nope\.csv; give classic, or a CSV"):
+        load_chart(tmp_path / "nope.csv")
