@@ -15,10 +15,18 @@ import numpy as np
 from numpy.typing import NDArray
 
 from benchmarks.portraits import PIGMENTS
-from benchmarks.repeated_faces import RepeatedFaces, Shot, scale_pigment, split_shots
+from benchmarks.repeated_faces import (
+    RepeatedFaces,
+    Shot,
+    fix_exposure,
+    scale_pigment,
+    split_shots,
+)
 from benchmarks.report import Results, main
+from benchmarks.scene_chart import read_scene_chart
 from skinnet.errors import InputError
 from skinnet.inference import Decomposer, compare_photographs
+from skinnet.inference.capture_profile import CaptureProfile
 from skinnet.inference.comparison import Comparison
 from skinnet.physics import Capture
 from train.synthetic.faces import COLLATE, SyntheticFaces, SyntheticScenes
@@ -29,17 +37,24 @@ LARGEST = float(np.log(2))
 
 KNOWN: Mapping[str, tuple[str, ...]] = {
     "blind": (),
-    "chart": ("white_balance",),
+    "white": ("white_balance",),
     "light_and_camera": ("white_balance", "light", "temperature", "camera", "linear"),
 }
-"""What is known of both captures, by key; of a chart it is what its white patch tells."""
+"""Parts that are known of both captures, by key."""
+
+CHART = "chart"
+"""Key of a chart beside the face in both photographs."""
 
 
 class Pair(NamedTuple):
-    """Two photographs of a face, and the true log changes of melanin and hemoglobin [2]."""
+    """Two photographs of a face, and the true log changes of melanin and hemoglobin [2].
+
+    `charts` is what a chart beside the face tells of each photograph; None where it is refused.
+    """
 
     shots: tuple[Shot, Shot]
     change: NDArray[np.float64]
+    charts: tuple[CaptureProfile | None, CaptureProfile | None]
 
 
 class Found(NamedTuple):
@@ -69,7 +84,7 @@ def measure(pairs: int = ChangedFaces.pairs, known: tuple[str, ...] = ("blind",)
 
     Args:
         pairs: Number of pairs with a change; as many are compared without one.
-        known: Keys of `KNOWN` to measure.
+        known: Keys of `KNOWN`, or `chart`: what to measure.
 
     Returns:
         By key, of each pigment `r` (correlation of true and found log changes), `rmse` and
@@ -112,23 +127,29 @@ def _render(
     # A mirrored picture would not be the same face.
     mirror = first.camera.mirror
     second = second._replace(camera=second.camera._replace(mirror=mirror))
-    before, after = split_shots(data.render(COLLATE["mild"]([first, second]), "test"))
-    return Pair((before, after), change)
+    scenes = [fix_exposure(data, one) for one in (first, second)]
+    before, after = split_shots(data.render(COLLATE["mild"](scenes), "test"))
+    charts = (
+        read_scene_chart(COLLATE["mild"]([one]), data.decoder.camera, "test", number)
+        for number, one in enumerate(scenes)
+    )
+    return Pair((before, after), change, (next(charts), next(charts)))
 
 
 def _compare_all(decomposer: Decomposer, pairs: list[Pair], key: str) -> list[Found | None]:
-    return [_compare(decomposer, pair, KNOWN[key]) for pair in pairs]
+    return [_compare(decomposer, pair, key) for pair in pairs]
 
 
-def _compare(decomposer: Decomposer, pair: Pair, known: tuple[str, ...]) -> Found | None:
+def _compare(decomposer: Decomposer, pair: Pair, key: str) -> Found | None:
     before, after = pair.shots
+    told = pair.charts if key == CHART else tuple(_tell(one, KNOWN[key]) for one in pair.shots)
     try:
         found = compare_photographs(
             before.photograph,
             after.photograph,
             decomposer=decomposer,
-            before_capture=_tell(before, known),
-            after_capture=_tell(after, known),
+            before_capture=told[0],
+            after_capture=told[1],
         )
     except InputError:
         return None

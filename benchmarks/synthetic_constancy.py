@@ -120,9 +120,19 @@ def fuse_people(reading: SkinReading, colours: NDArray[np.floating]) -> tuple[Fu
 
 def measure_coverage(fused: Fusion, log_truth: NDArray[np.floating]) -> float:
     """Measure which share of the intervals of people [people] hold the truth."""
-    seen = np.isfinite(fused.value) & np.isfinite(log_truth)
-    widths = np.array([np.log(find_factor(sd, LEVEL)) for sd in fused.sd[seen].tolist()])
-    return float((np.abs(fused.value - log_truth)[seen] <= widths).mean())
+    return measure_interval_coverage(fused.value - log_truth, fused.sd)
+
+
+def measure_interval_coverage(errors: NDArray[np.floating], sd: NDArray[np.floating]) -> float:
+    """Measure which share of intervals hold the truth; NaN is left out.
+
+    Args:
+        errors: Errors of logarithms, [n].
+        sd: Their standard deviations as stated, [n].
+    """
+    seen = np.isfinite(errors)
+    widths = np.array([np.log(find_factor(one, LEVEL)) for one in sd[seen].tolist()])
+    return float((np.abs(errors[seen]) <= widths).mean())
 
 
 def correlate_errors(

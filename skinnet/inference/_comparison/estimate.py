@@ -8,9 +8,10 @@ difference of chroma in a cell,
     not skin:  u = d + g + A x_k + b y_k + noise
 
 J_k holds the derivatives of chroma by log pigments, c is the change of the whole face, l_k a local
-change around it (a Gaussian process over the face), d the change of light at the skin's own colour;
-A, b and G let it depend on chroma x, luminance y and place p, as tone curves, saturation and mixed
-light do. g is how far what is not skin follows another change than skin.
+change around it (a Gaussian process over the face, whose mean there is 0), d the change of light at
+the skin's own colour; A, b and G let it depend on chroma x, luminance y and place p, as tone
+curves, saturation and mixed light do. g is how far what is not skin follows another change than
+skin.
 
 Skin alone cannot tell c from d. What the network reads in each photograph is the prior of c: it has
 seen the colour of the skin, so that d has no other prior. All else is a Gaussian linear model with
@@ -27,10 +28,11 @@ from scipy.linalg import cho_factor, cho_solve
 from skinnet.inference._comparison.cells import Cells
 from skinnet.inference._comparison.colour_derivatives import compute_chroma
 
-_NETWORK = 1.15
-"""Factor on the network's standard deviations: pairs of synthetic faces have this much more."""
+_NETWORK = np.array([1.0, 0.8])
+"""Factors on the network's standard deviations of both pigments: pairs of synthetic faces, whose
+errors are partly shared, have this much."""
 
-_CORRELATION = -0.4
+_CORRELATION = -0.3
 """Correlation of the errors of both pigments' changes in pairs of synthetic faces."""
 
 _USUAL_CHANGE = 0.5
@@ -244,7 +246,7 @@ def _solve(system: _System) -> _Solution:
     precision, noise = np.linalg.inv(system.prior), _share_noise(system)
     weight, scale = np.ones(len(system.variance)), np.ones(count)
     for _ in range(_ROUNDS):
-        scaled = kernel * np.outer(scale, scale)
+        scaled = _centre(kernel * np.outer(scale, scale))
         whole = noise + _spread_local(system, scaled)
         total = system.variance + np.diag(whole).reshape(-1, 2).mean(-1)
         whole += np.diag(np.repeat(system.variance / weight, 2))
@@ -306,6 +308,11 @@ def _spread_local(system: _System, kernel: Array) -> Array:
     whole = np.zeros((rows, rows))
     whole[: 2 * count, : 2 * count] = (kernel[:, None, :, None] * colours).reshape(2 * count, -1)
     return whole
+
+
+def _centre(kernel: Array) -> Array:
+    """Covariance of local changes less their mean over the face, which is that of the face."""
+    return np.asarray(kernel - kernel.mean(0) - kernel.mean(1, keepdims=True) + kernel.mean())
 
 
 def _correlate(place: Array, length: float) -> Array:

@@ -14,11 +14,14 @@ MOST_BLIND = 0.3
 are within 0.15."""
 
 
-def is_apart(own: Sequence[float], other: Sequence[float], most: float) -> bool:
+Balance = Sequence[float] | NDArray[Any]
+
+
+def is_apart(own: Balance, other: Balance, most: float) -> bool:
     """Whether log R/G or log B/G of two white balances differ by more than the largest."""
     return bool(np.abs(np.subtract(own, other)).max() > most)
 
 
-def format_balance(balance: Sequence[float] | NDArray[Any]) -> str:
+def format_balance(balance: Balance) -> str:
     """Write log R/G and log B/G with two digits."""
     return ", ".join(f"{one:.2f}" for one in balance)

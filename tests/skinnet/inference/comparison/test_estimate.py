@@ -51,9 +51,10 @@ def test_what_is_not_skin_tells_a_uniform_change_from_light() -> None:
     change, light = np.array([0.4, -0.3]), np.array([0.1, -0.1])
     cells, derivatives = make_cells(np.tile(change, (SIDE**2, 1)), light)
     everything = np.ones(SIDE**2, bool)
-    mean, covariance = estimate_changes(cells, derivatives, NOTHING).average(everything)
+    unsure = Reading(np.zeros(2), np.full(2, 0.6))
+    mean, covariance = estimate_changes(cells, derivatives, unsure).average(everything)
     np.testing.assert_allclose(mean, change, atol=0.15)
-    alone = estimate_changes(cells._replace(matches=~cells.skin & False), derivatives, NOTHING)
+    alone = estimate_changes(cells._replace(matches=~cells.skin & False), derivatives, unsure)
     blind, wide = alone.average(everything)
     np.testing.assert_allclose(blind, 0, atol=0.02)  # what the network reads, and no more
     assert (np.diag(covariance) < 0.6 * np.diag(wide)).all()
@@ -71,6 +72,14 @@ def test_a_local_change_is_found_without_anything_else() -> None:
     assert 0.25 < mean[1] < 0.65 and mean[1] > 1.645 * sds[1]
     assert abs(mean[0]) < 1.645 * sds[0]
     assert (sds < 0.6 * np.sqrt(np.diag(found.average(cheek)[1]))).all()
+
+
+def test_local_changes_leave_the_change_of_the_face_to_what_is_read() -> None:
+    rng = np.random.default_rng(3)
+    change = 0.3 * rng.standard_normal((SIDE**2, 2))
+    cells, derivatives = make_cells(change, np.array([0.3, 0.2]), others=0)
+    mean, _ = estimate_changes(cells, derivatives, NOTHING).average(np.ones(SIDE**2, bool))
+    np.testing.assert_allclose(mean, 0, atol=0.02)
 
 
 def test_other_clothes_are_left_out() -> None:
