@@ -1,4 +1,4 @@
-"""Factors on standard deviations by the tone of a face, which are calibrated after training."""
+"""Factors on standard deviations, which are calibrated after training: by tone and by capture."""
 
 import math
 
@@ -18,6 +18,9 @@ Scale = Float[Tensor, "2 2"]
 ByTone = Float[Tensor, "2 2 2"]
 """Coefficients of the tone and of its square in the logarithm of each factor."""
 
+ByKnown = Float[Tensor, "2 2 flags"]
+"""Coefficients of the flags of what is known of the capture in the same logarithm."""
+
 
 def measure_tone(melanin: Map, skin: Map) -> Float[Tensor, "batch"]:
     """Measure the natural logarithm of the mean melanin of skin, relative to .05."""
@@ -25,17 +28,23 @@ def measure_tone(melanin: Map, skin: Map) -> Float[Tensor, "batch"]:
 
 
 def find_factors(
-    tone: Float[Tensor, "count"], scale: Scale, by_tone: ByTone
+    tone: Float[Tensor, "count"],
+    known: Float[Tensor, "count flags"],
+    scale: Scale,
+    by_tone: ByTone,
+    by_known: ByKnown,
 ) -> Float[Tensor, "2 2 count"]:
     """Find the factors on standard deviations of pixels and faces, for each pigment."""
     linear, square = by_tone[..., None].unbind(2)
-    return scale[..., None] * (linear * tone + square * tone**2).exp()
+    told = (by_known[:, :, None] * known).sum(-1)
+    return scale[..., None] * (linear * tone + square * tone**2 + told).exp()
 
 
-def find_range(scale: Scale, by_tone: ByTone) -> tuple[Scale, Scale]:
-    """Find the smallest and largest factors over all tones."""
+def find_range(scale: Scale, by_tone: ByTone, by_known: ByKnown) -> tuple[Scale, Scale]:
+    """Find the smallest and largest factors over all tones and all that may be known."""
     linear, square = by_tone.unbind(2)
     turning = (-linear / (2 * square)).nan_to_num().clamp(*_TONES)
     tones = torch.stack([*map(torch.full_like, [scale] * 2, _TONES), turning])
     exponents = linear * tones + square * tones**2
-    return scale * exponents.amin(0).exp(), scale * exponents.amax(0).exp()
+    low, high = by_known.clamp_max(0).sum(-1), by_known.clamp_min(0).sum(-1)
+    return scale * (exponents.amin(0) + low).exp(), scale * (exponents.amax(0) + high).exp()
