@@ -10,7 +10,8 @@ The ladder, each step read of the same faces:
   processing, is read as `skinnet predict --chart` does. What it tells (white balance, exposure,
   tone curve; light and camera where they are sure) is used as for users. The spectra of the
   patches that are photographed are another copy than those that the reading assumes;
-- `light_and_camera`: the card, and the true light and camera by name;
+- `light`: the card, and the true light by name;
+- `light_and_camera`: the camera by name, too;
 - `raw`: the same face as a RAW file, in linear light without processing or compression, with the
   card, the light and the camera.
 
@@ -51,7 +52,8 @@ from train.synthetic.scene import SceneParameters
 SPLIT = "test"
 
 _CARD: tuple[str, ...] = ("white_balance", "exposure")
-_NAMED = (*_CARD, "light", "temperature", "camera")
+_LIT = (*_CARD, "light", "temperature")
+_NAMED = (*_LIT, "camera")
 _RAW = (*_NAMED, "linear")
 
 
@@ -140,6 +142,7 @@ def climb(data: SyntheticFaces, scene: SceneParameters, number: int) -> Rung:
         "nothing": Seen(shot.photograph, None),
         "white": card,
         "chart": card if profile is None else _apply(profile, shot.photograph),
+        "light": Seen(shot.photograph, _choose(first, _LIT)),
         "light_and_camera": Seen(shot.photograph, _choose(first, _NAMED)),
         "raw": Seen(raw.photograph, _choose(second, _RAW)),
     }

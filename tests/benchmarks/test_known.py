@@ -13,7 +13,7 @@ from skinnet.errors import InputError
 from skinnet.inference import Capture
 from skinnet.physics import LIGHTS
 
-STEPS = ("nothing", "white", "chart", "light_and_camera", "raw")
+STEPS = ("nothing", "white", "chart", "light", "light_and_camera", "raw")
 
 
 def test_each_step_knows_more(tmp_path: Path) -> None:
@@ -21,9 +21,10 @@ def test_each_step_knows_more(tmp_path: Path) -> None:
     data = settings.make_faces()
     rung = climb(data, data.test_dataloader().dataset[1], 1)
     assert tuple(rung.steps) == STEPS and np.isfinite(rung.truth).all()
-    nothing, white, chart, named, raw = rung.steps.values()
+    nothing, white, chart, lit, named, raw = rung.steps.values()
     assert nothing.told is None and (nothing.photograph == white.photograph).all()
     assert white.told.light is None and named.told.light.shape == (1, len(LIGHTS))
+    assert lit.told.camera is None and lit.told.temperature is not None
     assert named.told.linear is None and float(raw.told.linear) == 1
     assert (raw.photograph != nothing.photograph).any()
     # The chart and the card are two measurements of one balance, after and before the tone curve.
