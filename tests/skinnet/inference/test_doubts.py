@@ -63,8 +63,12 @@ def test_overexposed_skin_is_noted(share: float, noted: bool) -> None:
 
 def test_notes_are_those_of_the_photograph(decomposer: Decomposer, astronaut: np.ndarray) -> None:
     assert decomposer(astronaut, detail=False).notes == ()
+    slightly_warm = Capture(white_balance=(0.1, -0.1))
+    assert decomposer(astronaut, detail=False, capture=slightly_warm).notes == ()
     warm = Capture(white_balance=(0.5, -0.5))
-    assert decomposer(astronaut, detail=False, capture=warm).notes == ()
+    (note,) = decomposer(astronaut, detail=False, capture=warm, name="a.jpg").notes
+    assert note.startswith("The white balance that was given for the face in a.jpg is far from")
+    assert "0.50, -0.50" in note and note.endswith("and lit as the face is?")
     burnt = np.where(astronaut > 150, 255, astronaut).astype(np.uint8)
     (note,) = decomposer(burnt, detail=False, name="b.jpg").notes
     assert "% of the skin of the face in b.jpg is overexposed" in note
