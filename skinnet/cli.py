@@ -126,7 +126,9 @@ def _add_inputs(verb: argparse.ArgumentParser) -> None:
 
 
 def _add_edit(verbs: "argparse._SubParsersAction[argparse.ArgumentParser]") -> None:
-    verb = verbs.add_parser("edit", help="multiply the pigments of a photograph")
+    verb = verbs.add_parser(
+        "edit", help="multiply the pigments of a photograph: --melanin X, --hemoglobin X, or both"
+    )
     verb.add_argument("input", help="a photograph, or - for standard input")
     verb.add_argument(
         "-o",

@@ -77,12 +77,13 @@ class FlatDecomposer(Decomposer):
 def run(
     monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> Callable[..., tuple[int, str, str]]:
-    """Runs the command without a network: its exit code, output and messages."""
+    """Runs the command without a network, edits with a factor: exit code, output and messages."""
     monkeypatch.setattr("skinnet.inference._photo_verbs.Decomposer", FlatDecomposer)
     monkeypatch.setattr("skinnet.inference.results.draw_panel", lambda photo, _: photo)  # is slow
 
     def run(*arguments: object) -> tuple[int, str, str]:
-        code = main([str(argument) for argument in arguments])
+        factor = ("--melanin", 2) if arguments[0] == "edit" else ()
+        code = main([str(argument) for argument in (*arguments, *factor)])
         return code, *capsys.readouterr()
 
     return run

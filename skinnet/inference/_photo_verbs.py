@@ -179,6 +179,7 @@ def _describe_run(counts: Counter[str], found: Walk) -> str:
 def edit(options: argparse.Namespace) -> None:
     """Write one photograph with its pigments multiplied."""
     check_choice(options.faces)
+    _refuse_no_change(options)
     if options.output is not None:
         find_format(options.output)
     decomposer = _make_decomposer(options)
@@ -201,6 +202,15 @@ def edit(options: argparse.Namespace) -> None:
     for sentence in (*notes, *told_notes, *edited.notes, *changes, *losses):
         note(sentence)
     print_line(f"{source.name}: {target}")
+
+
+def _refuse_no_change(options: argparse.Namespace) -> None:
+    """Refuse factors of 1: a mere copy would replace an earlier edit of the photograph."""
+    if options.melanin == options.hemoglobin == 1:
+        raise InputError(
+            "Nothing is edited with factors of 1; give --melanin X or --hemoglobin X, such as "
+            "--melanin 1.5."
+        )
 
 
 def _read(found: Found) -> tuple[Source, Picture, tuple[str, ...]]:
