@@ -69,8 +69,10 @@ class FlatDecomposer(Decomposer):
         return [replace(one, face_id=number + 1) for number in range(count)]
 
     def edit_picture(self, picture: Picture, *_: object, **__: object) -> Picture:
-        """The picture as it is."""
-        return picture
+        """The picture with a red that is one level brighter or darker."""
+        pixels = picture.as_colour().pixels.copy()
+        pixels[..., 0] ^= 1
+        return replace(picture.as_colour(), pixels=pixels)
 
 
 @pytest.fixture

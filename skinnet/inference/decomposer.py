@@ -215,7 +215,7 @@ class Decomposer:
 
         Raises:
             InputError: An argument, the image or a model file cannot be used, or the image cannot
-                be read, as when it is called; or a factor is not 1, and yet no pixel changes.
+                be read, as when it is called.
             NoFaceError: No face was found.
 
         Example:
@@ -263,7 +263,7 @@ class Decomposer:
 
         Raises:
             InputError: An argument or a model file cannot be used, or the picture cannot be read,
-                as when it is called; or a factor is not 1, and yet no pixel changes.
+                as when it is called.
             NoFaceError: No face was found.
 
         Example:
@@ -285,11 +285,6 @@ class Decomposer:
         notes = [*colour.notes, *capture_notes]
         for subject in find_subjects(photo, name, faces, "skin" if whole_image else region):
             notes += self._edit_in_place(edited, photo, subject, factors, name, known)
-        if (melanin, hemoglobin) != (1, 1) and np.array_equal(edited.pixels, colour.pixels):
-            raise InputError(
-                f"No pixel of {name} changes: no skin that can be edited was found in it, or the "
-                "factors are too near 1."
-            )
         return replace(edited, notes=tuple(dict.fromkeys(notes)))
 
     def _decompose(

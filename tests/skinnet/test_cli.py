@@ -92,6 +92,18 @@ def test_json_alone_goes_to_standard_output(
     assert first == json.loads((tmp_path / "out" / "a.json").read_text())
 
 
+def test_the_terminal_states_the_intervals_of_the_summary(
+    predict: Predict, photo: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    assert predict(photo) == 0
+    out = capsys.readouterr().out
+    summary = json.loads((photo.parent / "skinmaps" / "a.json").read_text())
+    for name, each in summary["pigments"].items():
+        low, high = each["interval"]
+        assert each["level"] == 0.9
+        assert f"{name} {each['mean']:.2g} (90%: {low:.2g} to {high:.2g})" in out
+
+
 def test_no_skin_is_null_and_reported(
     skinless_file: Path, photo: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
@@ -333,7 +345,7 @@ def test_an_edit_of_no_skin_keeps_the_one_before(
     assert edit(photo, "--melanin", "2") == 0
     before = (tmp_path / "a_edited.png").read_bytes()
     assert main(["edit", str(photo), "--melanin", "2", "--model", str(skinless_file)]) == 2
-    assert f"No pixel of {photo} changes: no skin" in capsys.readouterr().err
+    assert f"No pixel of {photo} changes, and nothing is written: no skin" in capsys.readouterr().err
     assert (tmp_path / "a_edited.png").read_bytes() == before
 
 
