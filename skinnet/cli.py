@@ -275,7 +275,7 @@ def _add_told(verb: argparse.ArgumentParser, session: str) -> None:
     known.add_argument(
         "--light",
         metavar="NAME",
-        help="the light: daylight, D65 or D5500K for daylight of a temperature, flash, A (tungsten)"
+        help="the light: daylight, D65 or D5500K for daylight of a temperature, flash, tungsten (A)"
         ", FL2, FL7 or FL11 (fluorescent), LED-B1, LED-B3, LED-B5 or LED-V1",
     )
 

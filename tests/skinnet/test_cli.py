@@ -251,6 +251,19 @@ def test_a_bad_model_is_reported_once(
     assert names(tmp_path) == ["a.png", "bad.onnx"]
 
 
+@pytest.mark.parametrize("verb", [READ, EDIT])
+def test_an_unknown_light_is_answered_with_simple_words(
+    verb: list[str], photo: Path, model_file: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    assert main([*verb, str(photo), "--light", "sunny", "--model", str(model_file)]) == 2
+    assert capsys.readouterr().err == (
+        "skinnet: There is no light of the name 'sunny'. Give daylight, flash, tungsten, or the "
+        "temperature of daylight, such as D65 or 5500K (in Python by Capture.from_names), or a "
+        "light of the model: D, A.\n"
+    )
+    assert names(photo.parent) == ["a.png"]
+
+
 def test_edit_keeps_what_is_not_skin(edit: Predict, photo: Path, tmp_path: Path) -> None:
     assert edit(photo, "--melanin", "2") == 0
     before, after = pixels(photo), pixels(tmp_path / "a_edited.png")
