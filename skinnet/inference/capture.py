@@ -17,7 +17,13 @@ from skinnet.images.photograph import read_picture
 from skinnet.images.picture import Picture
 from skinnet.images.srgb import LUMINANCE_WEIGHTS, srgb_to_linear
 from skinnet.inference._light_names import find_light
-from skinnet.inference._references.place import Card, Sample, make_card, measure_colour, name_reference
+from skinnet.inference._references.place import (
+    Card,
+    Sample,
+    make_card,
+    measure_colour,
+    name_reference,
+)
 
 _TO_CAMERA = np.array(
     (

@@ -5,7 +5,7 @@ import pytest
 
 from skinnet import Decomposer
 from skinnet.inference import Capture
-from skinnet.inference._doubts import note_clipping, note_doubts
+from skinnet.inference._doubts import note_clipping, note_dark_skin, note_doubts
 
 SURE = (0.2, 0.3)
 WHO = "the face in a.jpg"
@@ -59,6 +59,17 @@ def test_overexposed_skin_is_noted(share: float, noted: bool) -> None:
     assert not noted or notes[0].startswith(f"20% of the skin of {WHO} is overexposed")
     mask[: round(2000 * share)] = 0
     assert note_clipping(WHO, photo, mask) == note_clipping(WHO, photo, 0 * mask) == ()
+
+
+@pytest.mark.parametrize(("melanin", "noted"), [(0.05, False), (0.11, False), (0.25, True)])
+def test_dark_skin_may_be_darker_than_it_is_read(melanin: float, noted: bool) -> None:
+    fractions, mask = np.full((8, 8), melanin, np.float32), np.ones((8, 8), np.float32)
+    fractions[:2], mask[:2] = 0.6 - melanin, 0  # the background does not count
+    notes = note_dark_skin(WHO, fractions, mask)
+    assert bool(notes) == noted
+    assert not noted or notes[0].startswith("Dark skin is often read as paler than it is")
+    assert not noted or f"the melanin of {WHO} may be above its interval" in notes[0]
+    assert note_dark_skin(WHO, fractions, 0 * mask) == ()
 
 
 def test_notes_are_those_of_the_photograph(decomposer: Decomposer, astronaut: np.ndarray) -> None:
