@@ -6,6 +6,8 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+Balance = Sequence[float] | NDArray[Any]
+
 MOST_APART = 0.12
 """Difference of log R/G or log B/G of a picture's own reference from a profile that is noted."""
 
@@ -14,11 +16,11 @@ MOST_BLIND = 0.3
 are within 0.15."""
 
 
-def is_apart(own: Sequence[float], other: Sequence[float], most: float) -> bool:
+def is_apart(own: Balance, other: Balance, most: float) -> bool:
     """Whether log R/G or log B/G of two white balances differ by more than the largest."""
     return bool(np.abs(np.subtract(own, other)).max() > most)
 
 
-def format_balance(balance: Sequence[float] | NDArray[Any]) -> str:
+def format_balance(balance: Balance) -> str:
     """Write log R/G and log B/G with two digits."""
     return ", ".join(f"{one:.2f}" for one in balance)

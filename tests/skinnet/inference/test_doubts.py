@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 
 from skinnet import Decomposer
+from skinnet.images import read_picture
 from skinnet.inference import Capture
 from skinnet.inference._doubts import note_clipping, note_dark_skin, note_doubts
 
@@ -80,6 +81,9 @@ def test_notes_are_those_of_the_photograph(decomposer: Decomposer, astronaut: np
     (note,) = decomposer(astronaut, detail=False, capture=warm, name="a.jpg").notes
     assert note.startswith("The white balance that was given for the face in a.jpg is far from")
     assert "0.50, -0.50" in note and note.endswith("and lit as the face is?")
+    picture = read_picture(astronaut)
+    assert decomposer.edit_picture(picture, 2.0, capture=slightly_warm).notes == ()
+    assert decomposer.edit_picture(picture, 2.0, capture=warm, name="a.jpg").notes == (note,)
     burnt = np.where(astronaut > 150, 255, astronaut).astype(np.uint8)
     (note,) = decomposer(burnt, detail=False, name="b.jpg").notes
     assert "% of the skin of the face in b.jpg is overexposed" in note
