@@ -126,7 +126,9 @@ def _add_inputs(verb: argparse.ArgumentParser) -> None:
 
 
 def _add_edit(verbs: "argparse._SubParsersAction[argparse.ArgumentParser]") -> None:
-    verb = verbs.add_parser("edit", help="multiply the pigments of a photograph")
+    verb = verbs.add_parser(
+        "edit", help="multiply the pigments of a photograph: --melanin X, --hemoglobin X, or both"
+    )
     verb.add_argument("input", help="a photograph, or - for standard input")
     verb.add_argument(
         "-o",
@@ -273,7 +275,7 @@ def _add_told(verb: argparse.ArgumentParser, session: str) -> None:
     known.add_argument(
         "--light",
         metavar="NAME",
-        help="the light: daylight, D65 or D5500K for daylight of a temperature, flash, A (tungsten)"
+        help="the light: daylight, D65 or D5500K for daylight of a temperature, flash, tungsten (A)"
         ", FL2, FL7 or FL11 (fluorescent), LED-B1, LED-B3, LED-B5 or LED-V1",
     )
 

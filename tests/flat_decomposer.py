@@ -69,20 +69,23 @@ class FlatDecomposer(Decomposer):
         return [replace(one, face_id=number + 1) for number in range(count)]
 
     def edit_picture(self, picture: Picture, *_: object, **__: object) -> Picture:
-        """The picture as it is."""
-        return picture
+        """The picture with a red that is one level brighter or darker."""
+        pixels = picture.as_colour().pixels.copy()
+        pixels[..., 0] ^= 1
+        return replace(picture.as_colour(), pixels=pixels)
 
 
 @pytest.fixture
 def run(
     monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> Callable[..., tuple[int, str, str]]:
-    """Runs the command without a network: its exit code, output and messages."""
+    """Runs the command without a network, edits with a factor: exit code, output and messages."""
     monkeypatch.setattr("skinnet.inference._photo_verbs.Decomposer", FlatDecomposer)
     monkeypatch.setattr("skinnet.inference.results.draw_panel", lambda photo, _: photo)  # is slow
 
     def run(*arguments: object) -> tuple[int, str, str]:
-        code = main([str(argument) for argument in arguments])
+        factor = ("--melanin", 2) if arguments[0] == "edit" else ()
+        code = main([str(argument) for argument in (*arguments, *factor)])
         return code, *capsys.readouterr()
 
     return run

@@ -51,6 +51,10 @@ _ON_CURVE = -2.4
 """Log of residuals (90 %) over chroma (75 %) below which a region is toned, however strong its
 tones; the least of the portraits is -1.8."""
 
+_DARK = 50.0
+"""Luma (75 %) of a face below which 8 bits may hide its colours: skin as dark as the darkest of the
+portraits is below it, and taken for toned, at a quarter of the exposure."""
+
 _BLACK = 8.0
 """Luma below which cells of a texture do not count."""
 
@@ -94,9 +98,12 @@ def check_colour(photo: NDArray[np.uint8], box: Box, face: Box | None, name: str
     """Raise `InputError` for a picture without colour, as `find_tone` finds it."""
     tone = find_tone(photo, box, face)
     if tone is not None:
+        height, width = photo.shape[:2]
+        region = box if face is None else frame_head(face, width, height, _FACE_MARGIN)
+        is_dark = np.percentile(_average(photo[region.slices]).luma, 75) < _DARK
         raise InputError(
             f"There is no colour in {name}: {tone}. Melanin and hemoglobin cannot be read from it; "
-            "give the colour photograph."
+            + ("it is too dark, give a brighter one." if is_dark else "give the colour photograph.")
         )
 
 

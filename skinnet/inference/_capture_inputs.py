@@ -11,6 +11,7 @@ from skinnet.errors import InputError
 from skinnet.images._raw.raw_file import FORMAT as RAW
 from skinnet.images._shot import read_shot
 from skinnet.images.picture import Picture
+from skinnet.inference._light_names import LIGHT_WORDS, find_light
 from skinnet.inference.capture import Capture
 from skinnet.inference.onnx_model import OnnxModel
 
@@ -123,17 +124,37 @@ def _order_lights(light: Any, names: tuple[str, ...]) -> Any:
     """Weights by name in the order of the encoder's lights; what is no mapping stays."""
     if not isinstance(light, Mapping):
         return light
-    folded = {name.casefold(): name for name in names}
     weights = dict.fromkeys(names, 0.0)
     for name, weight in light.items():
-        if str(name).casefold() not in folded:
-            close = difflib.get_close_matches(str(name).casefold(), folded, 1, 0.4)
-            meant = f"; {folded[close[0]]} may be meant" if close else ""
-            raise InputError(
-                f"There is no light of the name {name!r}{meant}. The lights are {', '.join(names)}."
-            )
-        weights[folded[str(name).casefold()]] += weight
+        weights[_find_lamp(str(name), names)] += weight
     return list(weights.values())
+
+
+def _find_lamp(name: str, names: tuple[str, ...]) -> str:
+    """The light of the encoder that a name in a mapping means."""
+    light, temperature = find_light(name)
+    if temperature is not None:
+        raise InputError(
+            f"light of a capture is weights of lights, and {name!r} is daylight of a temperature; "
+            f"Capture.from_names(light={name!r}) has both."
+        )
+    folded = {each.casefold(): each for each in names}
+    if light.casefold() not in folded:
+        raise InputError(_describe_unknown_light(name, folded))
+    return folded[light.casefold()]
+
+
+def _describe_unknown_light(name: str, folded: Mapping[str, str]) -> str:
+    """Say what lights there are; those of the encoder by their names in lower case."""
+    close = difflib.get_close_matches(name.casefold(), folded, 1, 0.4)
+    close = [folded[each] for each in close]
+    close += difflib.get_close_matches(name.casefold(), LIGHT_WORDS, 1, 0.7)
+    meant = f"; {close[0]} may be meant" if close else ""
+    return (
+        f"There is no light of the name {name!r}{meant}. Give daylight, flash, tungsten, or the "
+        "temperature of daylight, such as D65 or 5500K (in Python by Capture.from_names), or a "
+        f"light of the model: {', '.join(folded.values())}."
+    )
 
 
 def _read_numbers(name: str, part: Any, count: int) -> NDArray[np.float64] | None:

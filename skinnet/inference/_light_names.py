@@ -19,6 +19,8 @@ _WORDS: dict[str, tuple[str, float | None]] = {
 }
 """Lights of the model that words mean, and colour temperature."""
 
+LIGHT_WORDS = tuple(word for word in _WORDS if len(word) > 1)
+
 
 def find_light(name: str) -> tuple[str, float | None]:
     """Find the light of the model that a name means, and the temperature of daylight.
@@ -39,7 +41,7 @@ def find_light(name: str) -> tuple[str, float | None]:
         if not _KELVIN[0] <= kelvin <= _KELVIN[1]:
             raise InputError(
                 f"Daylight has {_KELVIN[0]:,.0f} to {_KELVIN[1]:,.0f} K; got the light {name!r}. "
-                "A lamp is A, or one of the other lights by name."
+                "A lamp is tungsten, or one of the other lights by name."
             )
         return "D", kelvin
     return _WORDS.get(folded, (name.strip(), None))

@@ -8,7 +8,7 @@ from PIL import Image
 
 from skinnet.inference._forest_plot import PlotRow, draw_forest_plot
 from skinnet.inference._tiles import draw_grid, draw_picture
-from skinnet.inference._uncertainty import PIGMENTS
+from skinnet.inference._uncertainty import PIGMENTS, describe_percent
 from skinnet.inference.person import Person
 
 _COLUMNS = 4
@@ -43,8 +43,7 @@ def _draw_shots(person: Person, pigment: str) -> Image.Image:
     ]
     fused = person.pigments[pigment]
     rows.append(PlotRow("fused", fused.mean, fused.interval, 2))
-    low, high = (100 * end for end in person.interval()[pigment])
-    note = f"{100 * person.means[pigment]:.2g} % ({low:.2g} to {high:.2g} %)"
+    note = describe_percent(person.means[pigment], person.interval()[pigment])
     return draw_forest_plot(pigment, pigment, rows, note)
 
 

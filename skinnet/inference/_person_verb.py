@@ -33,6 +33,7 @@ from skinnet.inference._photo_verbs import (
 )
 from skinnet.inference._tiles import TILE
 from skinnet.inference._told_capture import ToldCapture
+from skinnet.inference._uncertainty import describe_mean
 from skinnet.inference.decomposer import Decomposer
 from skinnet.inference.person import Person
 from skinnet.inference.results import _describe_fault, _make_folder
@@ -162,8 +163,9 @@ def _print(fused: Person, summary: dict[str, Any], files: str, as_json: bool) ->
     if as_json:
         print_line(json.dumps(summary, allow_nan=False))
         return
+    intervals = fused.interval()
     numbers = ", ".join(
-        f"{name} {one.mean:.2g} ± {one.sd:.1g}" for name, one in fused.pigments.items()
+        f"{name} {describe_mean(mean, intervals[name])}" for name, mean in fused.means.items()
     )
     used = [session for session in fused.sessions if session is not None]
     sessions = f"{max(used)} session{'s' * (max(used) > 1)}"

@@ -10,6 +10,8 @@ from io import BytesIO
 from pathlib import Path
 from typing import Any
 
+import numpy as np
+
 from skinnet.errors import InputError, NoFaceError
 from skinnet.images._mark import EDITED, Mark, read_mark
 from skinnet.images._result_names import OUTPUT, compute_digest, lock_folder
@@ -23,6 +25,7 @@ from skinnet.inference._face_rows import FaceTable
 from skinnet.inference._messages import describe, note, print_line, report
 from skinnet.inference._own_results import Source, choose_edit_target, choose_result_stem
 from skinnet.inference._told_capture import ToldCapture
+from skinnet.inference._uncertainty import describe_mean
 from skinnet.inference.decomposer import Decomposer
 from skinnet.inference.decomposition import Decomposition
 from skinnet.inference.results import (
@@ -162,7 +165,7 @@ def _describe_skin(summary: dict[str, Any]) -> str:
     if pigments["melanin"]["mean"] is None:
         return "no skin was found"
     numbers = ", ".join(
-        f"{name} {each['mean']:.2g} ± {each['sd']:.1g}" for name, each in pigments.items()
+        f"{name} {describe_mean(each['mean'], each['interval'])}" for name, each in pigments.items()
     )
     return f"{numbers} on skin, {summary['skin_share']:.0%} of the crop"
 
@@ -179,6 +182,7 @@ def _describe_run(counts: Counter[str], found: Walk) -> str:
 def edit(options: argparse.Namespace) -> None:
     """Write one photograph with its pigments multiplied."""
     check_choice(options.faces)
+    _refuse_no_change(options)
     if options.output is not None:
         find_format(options.output)
     decomposer = _make_decomposer(options)
@@ -196,11 +200,25 @@ def edit(options: argparse.Namespace) -> None:
         region=options.region,
         capture=known,
     )
+    if np.array_equal(edited.pixels, picture.as_colour().pixels):
+        raise InputError(
+            f"No pixel of {source.name} changes, and nothing is written: no skin that can be "
+            "edited was found in it, or the factors are too near 1."
+        )
     losses = write_picture(target, edited, Mark("edit", EDITED, source.digest))
     changes = () if options.output else changes
     for sentence in (*notes, *told_notes, *edited.notes, *changes, *losses):
         note(sentence)
     print_line(f"{source.name}: {target}")
+
+
+def _refuse_no_change(options: argparse.Namespace) -> None:
+    """Refuse factors of 1: a mere copy would replace an earlier edit of the photograph."""
+    if options.melanin == options.hemoglobin == 1:
+        raise InputError(
+            "Nothing is edited with factors of 1; give --melanin X or --hemoglobin X, such as "
+            "--melanin 1.5."
+        )
 
 
 def _read(found: Found) -> tuple[Source, Picture, tuple[str, ...]]:

@@ -1,7 +1,7 @@
 """How sure the pigments are, of pixels, regions and a face; and the intervals that follow."""
 
 import math
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from statistics import NormalDist
 from typing import Any, NamedTuple
 
@@ -85,9 +85,16 @@ def find_factor(log_sd: float, level: float = LEVEL) -> float:
     return math.exp(NormalDist().inv_cdf((1 + level) / 2) * log_sd)
 
 
-def describe_mean(mean: float, log_sd: float) -> str:
-    """Describe a fraction with its standard deviation."""
-    return f"{mean:.2g} ± {mean * log_sd:.1g}"
+def describe_mean(mean: float, interval: Sequence[float]) -> str:
+    """Describe a mean fraction with its 90 % interval."""
+    low, high = interval
+    return f"{mean:.2g} ({LEVEL:.0%}: {low:.2g} to {high:.2g})"
+
+
+def describe_percent(mean: float, interval: Sequence[float]) -> str:
+    """Describe a mean fraction with its interval in percent, as scales of maps are."""
+    low, high = (100 * end for end in interval)
+    return f"{100 * mean:.2g} % ({low:.2g} to {high:.2g} %)"
 
 
 def summarise_mean(mean: float | None, log_sd: float, top: float) -> dict[str, Any]:

@@ -17,7 +17,13 @@ from skinnet.images.photograph import read_picture
 from skinnet.images.picture import Picture
 from skinnet.images.srgb import LUMINANCE_WEIGHTS, srgb_to_linear
 from skinnet.inference._light_names import find_light
-from skinnet.inference._references.place import make_card, measure_colour
+from skinnet.inference._references.place import (
+    Card,
+    Sample,
+    make_card,
+    measure_colour,
+    name_reference,
+)
 
 _TO_CAMERA = np.array(
     (
@@ -168,11 +174,9 @@ class Capture(NamedTuple):
             [0.15, -0.19]
         """
         display = _read_colour(colour)
-        linear = srgb_to_linear(display).astype(np.float64)
-        red, green, blue = np.log(np.maximum(_TO_CAMERA @ linear, _LEAST)).tolist()
-        balance = red - green, blue - green
-        _refuse_unfit(display, balance)
-        return cls(white_balance=balance, exposure=_find_exposure(linear, reflectance))
+        is_clipped = 255 * display.max() >= _CLIPPED
+        clipped = f": {_CLIPPED} or more of 255 hides its true colour" if is_clipped else ""
+        return _find_balance(Sample(display, name_reference(display), clipped), Card(reflectance))
 
     @classmethod
     def from_reference(
@@ -206,19 +210,7 @@ class Capture(NamedTuple):
         """
         picture = image if isinstance(image, Picture) else read_picture(image)
         card = make_card(colour)
-        display = measure_colour(picture, tuple(place))
-        if card.colour is None:
-            return cls.from_white(display, card.reflectance)
-        linear, own = srgb_to_linear(display).astype(np.float64), np.array(card.colour)
-        red, green, blue = (
-            np.log(np.maximum(_TO_CAMERA @ linear, _LEAST)) - np.log(_TO_CAMERA @ own)
-        ).tolist()
-        balance = red - green, blue - green
-        _refuse_unfit(display, balance)
-        return cls(
-            white_balance=balance,
-            exposure=_find_exposure(linear, min(1.0, float(own @ LUMINANCE_WEIGHTS))),
-        )
+        return _find_balance(measure_colour(picture, tuple(place)), card)
 
     @classmethod
     def from_chart(
@@ -243,6 +235,22 @@ class Capture(NamedTuple):
         from skinnet.inference.capture_profile import CaptureProfile
 
         return CaptureProfile.from_chart(image, chart).capture
+
+
+def _find_balance(sample: Sample, card: Card) -> Capture:
+    """Find white balance and exposure by a reference.
+
+    Raises:
+        InputError: It is too dark, coloured or overexposed, or no reflectance.
+    """
+    linear = srgb_to_linear(sample.display).astype(np.float64)
+    own = np.ones(3) if card.colour is None else np.array(card.colour)
+    channels = np.log(np.maximum(_TO_CAMERA @ linear, _LEAST)) - np.log(_TO_CAMERA @ own)
+    red, green, blue = channels.tolist()
+    balance = red - green, blue - green
+    _refuse_unfit(sample, balance, card)
+    bright = card.reflectance if card.colour is None else min(1.0, float(own @ LUMINANCE_WEIGHTS))
+    return Capture(white_balance=balance, exposure=_find_exposure(linear, bright))
 
 
 def _find_exposure(linear: NDArray[np.float64], reflectance: float | None) -> float | None:
@@ -277,22 +285,27 @@ def _read_colour(colour: Any) -> NDArray[np.float64]:
     return display
 
 
-def _refuse_unfit(display: NDArray[np.float64], balance: tuple[float, float]) -> None:
-    levels = 255 * display
-    named = f"The white reference ({', '.join(f'{level:.0f}' for level in levels)})"
-    if levels.max() >= _CLIPPED:
+def _refuse_unfit(sample: Sample, balance: tuple[float, float], card: Card) -> None:
+    """Refuse what is dark, then what is coloured: more exposure would not help that."""
+    if 255 * sample.display.max() < _DARK:
         raise InputError(
-            f"{named} is overexposed: {_CLIPPED} or more of 255 hides its true colour. Choose a "
-            "darker part of it, or something grey."
-        )
-    if levels.max() < _DARK:
-        raise InputError(
-            f"{named} is too dark: below {_DARK} of 255 its colour is noise. Choose something "
-            "brighter in the light that falls on the face."
+            f"{sample.name} is too dark: below {_DARK} of 255 its colour is noise. Choose "
+            "something brighter in the light that falls on the face."
         )
     if math.hypot(*balance) > _MOST_COLOURED:
+        what, remedy = (
+            ("is coloured", "Choose something white or grey.")
+            if card.colour is None
+            else ("has not the colour that was given", "Check its place and that colour.")
+        )
+        over = " It is overexposed, too." if sample.clipped else ""
         raise InputError(
-            f"{named} is coloured: its log R/G and log B/G are {balance[0]:.2f} and "
-            f"{balance[1]:.2f}, and {_MOST_COLOURED:g} is the most that light makes of white. "
-            "Choose something white or grey."
+            f"{sample.name} {what}: its log R/G and log B/G are {balance[0]:.2f} and "
+            f"{balance[1]:.2f}, and {_MOST_COLOURED:g} is the most that light makes of white."
+            f"{over} {remedy}"
+        )
+    if sample.clipped:
+        raise InputError(
+            f"{sample.name} is overexposed{sample.clipped}. Choose a darker part of it, or "
+            "something grey."
         )

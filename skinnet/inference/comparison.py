@@ -153,7 +153,8 @@ def compare_photographs(
 
     Args:
         before: A photograph as for `Decomposer`; of several faces the largest is compared.
-        after: Another one of the same person, from the same side.
+        after: Another one of the same person, from the same side. That one of them is mirrored, as
+            selfies may be, is not noticed; left and right are then exchanged.
         decomposer: What reads them; None for the shipped model.
         before_capture: What is known of the light and camera of the first, as for `Decomposer`;
             None: nothing.

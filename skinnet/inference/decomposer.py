@@ -176,8 +176,7 @@ class Decomposer:
         known, notes = join_captures(picture, capture, self.encoder)
         picture = replace(picture, notes=(*picture.notes, *notes))
         subjects = find_subjects(picture.srgb, name, faces, "skin" if whole_image else region)
-        if "known_white_balance" in known:
-            subjects = [self._doubt_white(applied, each, name, known) for each in subjects]
+        subjects = [self._doubt_white(applied, each, name, known) for each in subjects]
         read = [self._decompose(picture, subject, name, detail, known) for subject in subjects]
         read = [applied.restore(each) for each in read]
         return read[0] if faces is None else read
@@ -277,13 +276,15 @@ class Decomposer:
         """
         factors = {"melanin": melanin, "hemoglobin": hemoglobin}
         _check_factors(**factors)
-        picture, capture, _, _ = apply_profile(picture, capture, is_read=False)
+        applied = apply_profile(picture, capture, is_read=False)
+        picture, capture = applied.picture, applied.capture
         known, capture_notes = join_captures(picture, capture, self.encoder)
         name = name or picture.name
         photo, colour = picture.srgb, picture.as_colour()
         edited = replace(colour, pixels=colour.pixels.copy())
         notes = [*colour.notes, *capture_notes]
         for subject in find_subjects(photo, name, faces, "skin" if whole_image else region):
+            subject = self._doubt_white(applied, subject, name, known)
             notes += self._edit_in_place(edited, photo, subject, factors, name, known)
         return replace(edited, notes=tuple(dict.fromkeys(notes)))
 
@@ -327,7 +328,9 @@ class Decomposer:
         )
 
     def _doubt_white(self, applied: Applied, subject: Subject, name: str, known: Inputs) -> Subject:
-        """Note that a white balance does not fit what is seen without it."""
+        """Note that a white balance that is known does not fit what is seen without it."""
+        if "known_white_balance" not in known:
+            return subject
         linear = {key: value for key, value in known.items() if key == "known_linear"}
         blind = self._encode(applied.picture.srgb, subject, linear)["white_balance"][0]
         told = known["known_white_balance"][0].tolist()

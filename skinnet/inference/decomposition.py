@@ -92,7 +92,8 @@ class Decomposition:
         >>> from skimage.data import astronaut
         >>> from skinnet import Decomposer
         >>> Decomposer(threads=1)(astronaut(), detail=False)
-        <Decomposition 512 x 512: melanin 0.031 ± 0.008, hemoglobin 0.039 ± 0.01, 17% is skin>
+        <Decomposition 512 x 512: melanin 0.031 (90%: 0.02 to 0.049),
+        hemoglobin 0.039 (90%: 0.022 to 0.067), 17% is skin>
     """
 
     melanin: NDArray[np.float32]
@@ -123,9 +124,9 @@ class Decomposition:
         height, width = self.mask.shape
         if not self.means:
             return f"<Decomposition {width} x {height}: no skin>"
+        intervals = self.interval()
         pigments = (
-            f"{name} {describe_mean(mean, self._log_sds[name])}"
-            for name, mean in self.means.items()
+            f"{name} {describe_mean(mean, intervals[name])}" for name, mean in self.means.items()
         )
         return (
             f"<Decomposition {width} x {height}: {', '.join(pigments)}, "

@@ -14,7 +14,7 @@ from skinnet.inference._tiles import (
     draw_pigment_map,
     draw_plain_map,
 )
-from skinnet.inference._uncertainty import PIGMENTS
+from skinnet.inference._uncertainty import PIGMENTS, describe_percent
 from skinnet.inference.decomposition import Decomposition
 
 
@@ -70,5 +70,4 @@ def _describe_mean(decomposition: Decomposition, name: str) -> str:
     """A mean and its interval in percent."""
     if name not in decomposition.means:
         return ""
-    low, high = (100 * end for end in decomposition.interval()[name])
-    return f"{100 * decomposition.means[name]:.2g} % ({low:.2g} to {high:.2g} %)"
+    return describe_percent(decomposition.means[name], decomposition.interval()[name])

@@ -135,9 +135,9 @@ class Person:
         )
 
     def __repr__(self) -> str:
+        intervals = self.interval()
         pigments = ", ".join(
-            f"{name} {describe_mean(mean, self.pigments[name].log_sd)}"
-            for name, mean in self.means.items()
+            f"{name} {describe_mean(mean, intervals[name])}" for name, mean in self.means.items()
         )
         used = [session for session in self.sessions if session is not None]
         sessions = max(used)

@@ -12,6 +12,7 @@ from skinnet.appearance.colour import SkinColour
 from skinnet.appearance.edit import PigmentEdit, edit_texture
 from skinnet.appearance.maps_file import load_maps, save_maps
 from skinnet.appearance.skin_texture import SkinTexture
+from skinnet.errors import InputError
 from skinnet.images._png_file import write_png
 from skinnet.images._result_names import choose_stem
 from skinnet.images.photograph import read_photo
@@ -78,6 +79,7 @@ def run(config: Namespace) -> int:
         PigmentEdit(config[name], config[f"{name}_add"], config[f"{name}_paint"])
         for name in _PIGMENTS
     )
+    _refuse_no_change(melanin, hemoglobin, config.relight)
     after = edit_texture(before, colour, melanin, hemoglobin, _read_mask(config.mask))
     name = config.maps.name.removesuffix(MAPS_END).removesuffix(".npz")
     source = Source.read([config.maps])
@@ -101,6 +103,17 @@ def run(config: Namespace) -> int:
     write_png(add_end(stem, "_panel.png"), panel, text)
     print(f"{config.maps}: {stem}_maps.npz, _albedo.png, _panel.png", flush=True)
     return 0
+
+
+def _refuse_no_change(
+    melanin: PigmentEdit, hemoglobin: PigmentEdit, relight: RelightSettings
+) -> None:
+    """Refuse what neither edits nor relights: a mere copy would replace an earlier edit."""
+    if melanin == hemoglobin == PigmentEdit() and relight == RelightSettings():
+        raise InputError(
+            "Nothing is edited: all factors are 1, nothing is added or painted, and light and "
+            "camera are the usual ones. Give an edit, such as --melanin=1.5."
+        )
 
 
 def _read_mask(path: Path | None) -> Float[np.ndarray, "h w"] | None:

@@ -252,8 +252,8 @@ def test_a_missing_decoder_and_a_folder_are_named(tmp_path: Path) -> None:
 def test_the_command_says_it_too(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     Image.new("RGB", (64, 64), (200, 150, 130)).save(tmp_path / "a.png")
     path = write_pair(tmp_path / "skin.onnx", set_opset("", 99))
-    for verb in ("predict", "edit"):
-        arguments = [verb, str(tmp_path / "a.png"), "--model", str(path), "--whole-image"]
+    for verb in (["predict"], ["edit", "--melanin", "2"]):
+        arguments = [*verb, str(tmp_path / "a.png"), "--model", str(path), "--whole-image"]
         assert main([*arguments, "-o", str(tmp_path / "out.png")]) == 2
         message = capsys.readouterr().err
         assert str(get_decoder_path(path)) in message and UPGRADE in message and RUNTIME in message

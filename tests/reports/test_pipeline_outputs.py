@@ -323,7 +323,7 @@ def test_random_and_edited_faces_are_no_subjects(
     for file in (models / "first").iterdir():
         shutil.copy(file, tmp_path)
     shutil.copy(models / "samples" / "sample_00_maps.npz", tmp_path)
-    assert main(["edit-maps", str(tmp_path / "1_maps.npz")]) == 0
+    assert main(["edit-maps", str(tmp_path / "1_maps.npz"), "--melanin=1.5"]) == 0
     (tmp_path / "1_edited_maps.npz").rename(tmp_path / "darker_maps.npz")
     command = ["build-model", str(tmp_path), "-o", str(tmp_path / "model"), "--model.samples=2"]
     assert main(command) == 0

@@ -39,6 +39,9 @@ def edit(model_file: Path) -> Predict:
     return lambda *arguments: main(["edit", *map(str, arguments), "--model", str(model_file)])
 
 
+READ, EDIT = ["predict"], ["edit", "--melanin", "2"]
+
+
 def names(folder: Path) -> list[str]:
     return sorted(path.name for path in folder.iterdir())
 
@@ -87,6 +90,18 @@ def test_json_alone_goes_to_standard_output(
     first = json.loads(line)
     assert first["file"] == str(photo)
     assert first == json.loads((tmp_path / "out" / "a.json").read_text())
+
+
+def test_the_terminal_states_the_intervals_of_the_summary(
+    predict: Predict, photo: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    assert predict(photo) == 0
+    out = capsys.readouterr().out
+    summary = json.loads((photo.parent / "skinmaps" / "a.json").read_text())
+    for name, each in summary["pigments"].items():
+        low, high = each["interval"]
+        assert each["level"] == 0.9
+        assert f"{name} {each['mean']:.2g} (90%: {low:.2g} to {high:.2g})" in out
 
 
 def test_no_skin_is_null_and_reported(
@@ -188,15 +203,15 @@ def test_standard_input_is_a_photograph(
     )
 
 
-@pytest.mark.parametrize("verb", ["predict", "edit"])
+@pytest.mark.parametrize("verb", [READ, EDIT])
 def test_empty_standard_input_is_reported(
-    verb: str,
+    verb: list[str],
     model_file: Path,
     monkeypatch: pytest.MonkeyPatch,
     capsys: pytest.CaptureFixture[str],
 ) -> None:
     monkeypatch.setattr(sys, "stdin", io.TextIOWrapper(io.BytesIO(b"")))
-    assert main([verb, "-", "--model", str(model_file)]) == 2
+    assert main([*verb, "-", "--model", str(model_file)]) == 2
     assert (
         capsys.readouterr().err
         == "skinnet: standard input is empty (0 bytes); was it copied completely?\n"
@@ -225,15 +240,28 @@ def test_a_file_that_cannot_be_written_takes_the_others_with_it(
     assert names(tmp_path / "out") == ["a.json"]
 
 
-@pytest.mark.parametrize("verb", ["predict", "edit"])
+@pytest.mark.parametrize("verb", [READ, EDIT])
 def test_a_bad_model_is_reported_once(
-    verb: str, photo: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+    verb: list[str], photo: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
     (tmp_path / "bad.onnx").write_bytes(b"bad")
-    assert main([verb, str(photo), "--model", str(tmp_path / "bad.onnx")]) == 2
+    assert main([*verb, str(photo), "--model", str(tmp_path / "bad.onnx")]) == 2
     (line,) = capsys.readouterr().err.splitlines()
     assert line.startswith(f"skinnet: {tmp_path / 'bad.onnx'} is not a complete ONNX file")
     assert names(tmp_path) == ["a.png", "bad.onnx"]
+
+
+@pytest.mark.parametrize("verb", [READ, EDIT])
+def test_an_unknown_light_is_answered_with_simple_words(
+    verb: list[str], photo: Path, model_file: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    assert main([*verb, str(photo), "--light", "sunny", "--model", str(model_file)]) == 2
+    assert capsys.readouterr().err == (
+        "skinnet: There is no light of the name 'sunny'. Give daylight, flash, tungsten, or the "
+        "temperature of daylight, such as D65 or 5500K (in Python by Capture.from_names), or a "
+        "light of the model: D, A.\n"
+    )
+    assert names(photo.parent) == ["a.png"]
 
 
 def test_edit_keeps_what_is_not_skin(edit: Predict, photo: Path, tmp_path: Path) -> None:
@@ -296,15 +324,48 @@ def test_edit_refuses_in_a_sentence(
 ) -> None:
     monkeypatch.chdir(photo.parent)
     before = photo.read_bytes()
+    options = options if "--melanin" in options else ["--melanin", "2", *options]
     assert edit("a.png", *options) == 2
     assert words in capsys.readouterr().err
     assert names(photo.parent) == ["a.png"] and photo.read_bytes() == before
 
 
+@pytest.mark.parametrize("factors", [[], ["--melanin", "1"], ["--hemoglobin", "1.0"]])
+def test_an_edit_that_changes_nothing_keeps_the_one_before(
+    edit: Predict,
+    photo: Path,
+    tmp_path: Path,
+    capsys: pytest.CaptureFixture[str],
+    factors: list[str],
+) -> None:
+    assert edit(photo, "--melanin", "2") == 0
+    before = (tmp_path / "a_edited.png").read_bytes()
+    capsys.readouterr()
+    assert edit(photo, *factors) == 2
+    (line,) = capsys.readouterr().err.splitlines()
+    assert line.startswith("skinnet: Nothing is edited with factors of 1; give --melanin X or")
+    assert names(tmp_path) == ["a.png", "a_edited.png"]
+    assert (tmp_path / "a_edited.png").read_bytes() == before
+
+
+def test_an_edit_of_no_skin_keeps_the_one_before(
+    edit: Predict,
+    skinless_file: Path,
+    photo: Path,
+    tmp_path: Path,
+    capsys: pytest.CaptureFixture[str],
+) -> None:
+    assert edit(photo, "--melanin", "2") == 0
+    before = (tmp_path / "a_edited.png").read_bytes()
+    assert main(["edit", str(photo), "--melanin", "2", "--model", str(skinless_file)]) == 2
+    assert f"No pixel of {photo} changes, and nothing is written:" in capsys.readouterr().err
+    assert (tmp_path / "a_edited.png").read_bytes() == before
+
+
 @pytest.mark.parametrize("source", ["", ".", "none.jpg", "a\0b.jpg", "x" * 300 + ".jpg"])
-@pytest.mark.parametrize("verb", ["predict", "edit"])
+@pytest.mark.parametrize("verb", [READ, EDIT])
 def test_odd_paths_are_sentences(
-    verb: str,
+    verb: list[str],
     source: str,
     model_file: Path,
     tmp_path: Path,
@@ -312,7 +373,7 @@ def test_odd_paths_are_sentences(
     capsys: pytest.CaptureFixture[str],
 ) -> None:
     monkeypatch.chdir(tmp_path)
-    assert main([verb, source, "--model", str(model_file)]) == 2
+    assert main([*verb, source, "--model", str(model_file)]) == 2
     (line,) = capsys.readouterr().err.splitlines()
     assert line.startswith("skinnet: ") and line.endswith(".")
     assert names(tmp_path) == []

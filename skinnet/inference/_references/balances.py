@@ -6,15 +6,14 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+Balance = Sequence[float] | NDArray[Any]
+
 MOST_APART = 0.12
 """Difference of log R/G or log B/G of a picture's own reference from a profile that is noted."""
 
 MOST_BLIND = 0.3
 """The same between what is read of a face without a profile, and the profile; portraits without one
 are within 0.15."""
-
-
-Balance = Sequence[float] | NDArray[Any]
 
 
 def is_apart(own: Balance, other: Balance, most: float) -> bool:

@@ -48,6 +48,20 @@ class Card(NamedTuple):
     levels: tuple[int, ...] | None = None
 
 
+class Sample(NamedTuple):
+    """The colour of a reference in a photograph.
+
+    Attributes:
+        display: sRGB [3] in [0, 1].
+        name: What it is called in messages.
+        clipped: How much of it is overexposed, in words; empty if it is not.
+    """
+
+    display: Array
+    name: str
+    clipped: str
+
+
 def read_place(text: str) -> tuple[int, ...]:
     """Read X,Y or X0,Y0,X1,Y1.
 
@@ -113,11 +127,11 @@ def make_card(known: float | Sequence[int] | None) -> Card:
     return Card(None, (red, green, blue), tuple(int(level) for level in levels))
 
 
-def measure_colour(picture: Picture, place: tuple[int, ...]) -> Array:
-    """Measure the mean colour, sRGB [3] in [0, 1], at a point or in a box of a picture.
+def measure_colour(picture: Picture, place: tuple[int, ...]) -> Sample:
+    """Measure the mean colour at a point or in a box of a picture.
 
     Raises:
-        InputError: The place is not in the picture, or what is there is overexposed or uneven.
+        InputError: The place is not in the picture, or what is there is transparent or uneven.
     """
     box = _make_box(picture, place)
     alpha = None if picture.alpha is None else picture.alpha[box.slices]
@@ -129,20 +143,25 @@ def measure_colour(picture: Picture, place: tuple[int, ...]) -> Array:
         picture.name, picture.pixels[box.slices], colour_space=picture.colour_space
     ).linear()
     pixels = part.reshape(-1, 3).astype(np.float64)
-    where = f"The white reference at {_describe(place)} in {picture.name}"
-    clipped = float((pixels >= _CLIPPED).any(-1).mean())
-    if clipped > _CLIPPED_SHARE:
-        raise InputError(
-            f"{where} is overexposed in {clipped:.0%} of its pixels, which hides its true colour. "
-            "Choose a darker part of it, or something grey."
-        )
+    where = f"at {_describe(place)} in {picture.name}"
+    display = linear_to_srgb(pixels.mean(0)).astype(np.float64)
+    share = float((pixels >= _CLIPPED).any(-1).mean())
+    if share > _CLIPPED_SHARE:
+        clipped = f" in {share:.0%} of its pixels, which hides its true colour"
+        return Sample(display, name_reference(display, where), clipped)
     brightness = pixels.mean(-1)
     if brightness.std() > _MOST_SPREAD * max(float(brightness.mean()), 0.02):
         raise InputError(
-            f"{where} is uneven: a shadow or an edge lies in it. Give a box in which it has one "
-            "colour."
+            f"The white reference {where} is uneven: a shadow or an edge lies in it. Give a box in "
+            "which it has one colour."
         )
-    return linear_to_srgb(pixels.mean(0)).astype(np.float64)
+    return Sample(display, name_reference(display, where), "")
+
+
+def name_reference(display: Array, where: str = "") -> str:
+    """Name a reference by its sRGB [3] in [0, 1], and by its place."""
+    levels = ", ".join(f"{level:.0f}" for level in 255 * display)
+    return f"The white reference ({levels}) {where}".rstrip()
 
 
 def _make_box(picture: Picture, place: tuple[int, ...]) -> Box:

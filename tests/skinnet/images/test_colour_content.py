@@ -56,6 +56,15 @@ def test_patches_of_skin_are_read(skin: tuple[int, int, int]) -> None:
         assert find_tone_anywhere(patch) is None
 
 
+def test_the_remedy_for_a_dark_picture_is_a_brighter_one() -> None:
+    sepia = TONES["sepia"](make_colour())
+    dark = to_uint8(255 * linear_to_srgb(0.03 * srgb_to_linear(sepia)))
+    for photo, remedy in ((sepia, "give the colour photo"), (dark, "too dark, give a brighter")):
+        box = frame_head(FACE, photo.shape[1], photo.shape[0])
+        with pytest.raises(InputError, match=f"There is no colour in a.jpg: .* {remedy}"):
+            check_colour(photo, box, FACE, "a.jpg")
+
+
 def test_cheek_forehead_and_close_up_of_a_photograph_are_read() -> None:
     photo = make_colour()
     for box in (Box(135, 115, 160, 135), Box(160, 75, 195, 90), Box(130, 70, 222, 165)):

@@ -62,6 +62,7 @@ def test_the_exposure_of_grey_does_not_matter() -> None:
         ((0, 0, 0), "is too dark"),
         ((200, 90, 60), r"\(200, 90, 60\) is coloured: .* Choose something white or grey"),
         ((40, 0, 0), r"\(40, 0, 0\) is coloured"),
+        ((255, 128, 0), r"\(255, 128, 0\) is coloured: .* It is overexposed, too. Choose some"),
         ((60, 90, 220), r"\(60, 90, 220\) is coloured"),
         ((300, 200, 200), r"integers of 0 to 255, or in floats of 0 to 1; got \(300, 200, 200\)"),
         ((200.0, 180.0, 170.0), r"floats of 0 to 1; got \(200, 180, 170\)"),

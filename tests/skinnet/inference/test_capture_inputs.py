@@ -44,6 +44,14 @@ def test_all_parts_are_inputs(encoder: OnnxModel) -> None:
     assert name_known(inputs) == Capture._fields
 
 
+def test_words_for_lights_are_names(encoder: OnnxModel) -> None:
+    words, names = (
+        make_capture_inputs(Capture(light), encoder)["known_light"]
+        for light in ({"Tungsten": 1.0, "daylight": 3.0}, {"A": 1.0, "D": 3.0})
+    )
+    np.testing.assert_array_equal(words, names)
+
+
 @pytest.mark.parametrize("shape", [(), (1,)])
 def test_tensors_of_physics_are_the_same(shape: tuple[int, ...], encoder: OnnxModel) -> None:
     numbers = Capture([1.0] * len(LIGHTS), 5500.0, [0.5] * 6, (0.1, -0.2), False, 0.0)
@@ -67,10 +75,14 @@ def test_none_and_nan_are_not_known(capture: Capture, encoder: OnnxModel) -> Non
     [
         (
             Capture({"dd": 1}),
-            r"no light of the name 'dd'; D may be meant. The lights are D, A, FL2",
+            r"no light of the name 'dd'; D may be meant\. Give daylight, .* the model: D, A, FL2",
         ),
         (Capture({"ledb3": 1}), "LED-B3 may be meant"),
-        (Capture({"xyz": 1}), "no light of the name 'xyz'. The lights are"),
+        (Capture({"xyz": 1}), "no light of the name 'xyz'. Give daylight, flash, tungsten"),
+        (Capture({"sunny": 1}), "'sunny'. Give .* such as D65 or 5500K .*: D, A, FL2, FL7"),
+        (Capture({"Day light": 1}), "'Day light'; daylight may be meant"),
+        (Capture({"flash": 1}), "weights of lights, and 'flash' is daylight of a temperature"),
+        (Capture({"D65": 1}), r"Capture\.from_names\(light='D65'\) has both"),
         (Capture([0.5, 0.5]), "light of a capture has 9 values; got 2"),
         (Capture([-1.0] + [1.0] * 8), "weights that are not negative, and not all 0; got -1, 1"),
         (Capture({"D": 0.0}), "weights that are not negative, and not all 0; got 0"),

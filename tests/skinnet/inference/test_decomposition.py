@@ -37,9 +37,11 @@ def test_a_repr_holds_numbers_and_no_arrays(
 ) -> None:
     summary = decomposition.summary()
     melanin, hemoglobin = (summary["pigments"][name] for name in ("melanin", "hemoglobin"))
+    (low, high), (other_low, other_high) = melanin["interval"], hemoglobin["interval"]
     assert repr(decomposition) == (
-        f"<Decomposition 512 x 512: melanin {melanin['mean']:.2g} ± {melanin['sd']:.1g}, "
-        f"hemoglobin {hemoglobin['mean']:.2g} ± {hemoglobin['sd']:.1g}, "
+        "<Decomposition 512 x 512: "
+        f"melanin {melanin['mean']:.2g} (90%: {low:.2g} to {high:.2g}), "
+        f"hemoglobin {hemoglobin['mean']:.2g} (90%: {other_low:.2g} to {other_high:.2g}), "
         f"{summary['skin_share']:.0%} is skin>"
     )
     assert repr(Decomposer(skinless_file)(astronaut)) == "<Decomposition 512 x 512: no skin>"

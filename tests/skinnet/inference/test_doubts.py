@@ -4,8 +4,9 @@ import numpy as np
 import pytest
 
 from skinnet import Decomposer
+from skinnet.images import read_picture
 from skinnet.inference import Capture
-from skinnet.inference._doubts import note_clipping, note_doubts
+from skinnet.inference._doubts import note_clipping, note_dark_skin, note_doubts
 
 SURE = (0.2, 0.3)
 WHO = "the face in a.jpg"
@@ -61,10 +62,28 @@ def test_overexposed_skin_is_noted(share: float, noted: bool) -> None:
     assert note_clipping(WHO, photo, mask) == note_clipping(WHO, photo, 0 * mask) == ()
 
 
+@pytest.mark.parametrize(("melanin", "noted"), [(0.05, False), (0.11, False), (0.25, True)])
+def test_dark_skin_may_be_darker_than_it_is_read(melanin: float, noted: bool) -> None:
+    fractions, mask = np.full((8, 8), melanin, np.float32), np.ones((8, 8), np.float32)
+    fractions[:2], mask[:2] = 0.6 - melanin, 0  # the background does not count
+    notes = note_dark_skin(WHO, fractions, mask)
+    assert bool(notes) == noted
+    assert not noted or notes[0].startswith("Dark skin is often read as paler than it is")
+    assert not noted or f"the melanin of {WHO} may be above its interval" in notes[0]
+    assert note_dark_skin(WHO, fractions, 0 * mask) == ()
+
+
 def test_notes_are_those_of_the_photograph(decomposer: Decomposer, astronaut: np.ndarray) -> None:
     assert decomposer(astronaut, detail=False).notes == ()
+    slightly_warm = Capture(white_balance=(0.1, -0.1))
+    assert decomposer(astronaut, detail=False, capture=slightly_warm).notes == ()
     warm = Capture(white_balance=(0.5, -0.5))
-    assert decomposer(astronaut, detail=False, capture=warm).notes == ()
+    (note,) = decomposer(astronaut, detail=False, capture=warm, name="a.jpg").notes
+    assert note.startswith("The white balance that was given for the face in a.jpg is far from")
+    assert "0.50, -0.50" in note and note.endswith("and lit as the face is?")
+    picture = read_picture(astronaut)
+    assert decomposer.edit_picture(picture, 2.0, capture=slightly_warm).notes == ()
+    assert decomposer.edit_picture(picture, 2.0, capture=warm, name="a.jpg").notes == (note,)
     burnt = np.where(astronaut > 150, 255, astronaut).astype(np.uint8)
     (note,) = decomposer(burnt, detail=False, name="b.jpg").notes
     assert "% of the skin of the face in b.jpg is overexposed" in note

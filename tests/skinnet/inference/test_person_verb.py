@@ -35,7 +35,12 @@ def test_shots_are_fused_into_a_panel_and_a_summary(run: Run, shots: list[Path])
     code, out, err = run("person", *shots)
     folder = shots[0].parent / "skinmaps"
     assert code == 0 and names(folder) == ["a_person.json", "a_person.png"]
-    assert out.startswith("2 shots of 2 sessions: melanin 0.21 ± 0.02, hemoglobin 0.1 ± 0.02")
+    melanin, hemoglobin = (
+        f"{name} {one['mean']:.2g} (90%: {low:.2g} to {high:.2g})"
+        for name, one in load(folder / "a_person.json")["pigments"].items()
+        for low, high in [one["interval"]]
+    )
+    assert out.startswith(f"2 shots of 2 sessions: {melanin}, {hemoglobin} on skin; 2 files")
     assert "2 read, 0 passed over, 0 could not be read." in err
     summary = load(folder / "a_person.json")
     assert [shot["file"] for shot in summary["shots"]] == [str(each) for each in shots]

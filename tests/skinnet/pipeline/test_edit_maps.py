@@ -55,7 +55,7 @@ def test_maps_without_a_mesh_are_edited_all_the_same(
         ("--melanin=-1", "scale is a factor from 0 to 10"),
         ("--melanin_add=20", "Was it given in percent?"),
         ("--hemoglobin_paint=5", "Was it given in percent?"),
-        ("--mask=absent.png", "absent.png"),
+        ("--melanin=2 --mask=absent.png", "absent.png"),
         ("--relight.strengths=[1,2]", "1 lamps and 2 strengths"),
         ("--relight.harmonics=[1,2]", "nine coefficients"),
         ("--relight.size=1", "size is a number of pixels"),
@@ -64,7 +64,7 @@ def test_maps_without_a_mesh_are_edited_all_the_same(
 def test_a_bad_edit_is_refused(
     maps: Path, tmp_path: Path, refused: Refused, option: str, words: str
 ) -> None:
-    said = refused("edit-maps", maps / "a_maps.npz", "-o", tmp_path, option)
+    said = refused("edit-maps", maps / "a_maps.npz", "-o", tmp_path, *option.split())
     assert words in said
     assert not list(tmp_path.iterdir())
 
@@ -83,6 +83,13 @@ def test_old_names_of_the_camera_angles_are_answered_with_the_new(
     )
     (tmp_path / "dotted.yaml").write_text(f"relight.{old}: 20.0\n")
     assert f"{new}'; use the new name." in refused(*command, "--config", tmp_path / "dotted.yaml")
+
+
+def test_no_edit_is_refused(maps: Path, tmp_path: Path, refused: Refused) -> None:
+    command = ("edit-maps", maps / "a_maps.npz", "-o", tmp_path)
+    for options in ((), ("--melanin=1.0",), ("--hemoglobin_add=0",)):
+        assert "Nothing is edited: all factors are 1" in refused(*command, *options)
+    assert not list(tmp_path.iterdir())
 
 
 def test_something_else_than_maps_is_refused(model: Path, tmp_path: Path, refused: Refused) -> None:

@@ -54,6 +54,12 @@ def test_a_known_card_is_divided_out() -> None:
         ),
         ((200, 60, 40), (60, 40), "is coloured: .* Choose something white or grey"),
         ((8, 8, 7), (60, 40), "is too dark"),
+        (
+            (255, 120, 10),
+            (60, 40),
+            r"\(255, 120, 10\) at 60,40 in The array is coloured: .* overexposed, too\. Choose",
+        ),
+        ((255, 120, 10), (60, 30, 95, 50), "is coloured: .* It is overexposed, too"),
         (GREY, (20, 10, 60, 50), "is uneven: a shadow or an edge lies in it"),
         (GREY, (120, 40), r"120,40 is not in The array, which has 120 x 80 pixels"),
         (GREY, (-1, 40), "is not in The array"),
@@ -66,6 +72,12 @@ def test_what_is_no_reference_is_refused(
 ) -> None:
     with pytest.raises(InputError, match=sentence):
         Capture.from_reference(picture(colour), place)
+
+
+@pytest.mark.parametrize("colour", [(255, 245, 235), (200, 180, 150)])
+def test_a_card_that_is_elsewhere_is_named(colour: tuple[int, ...]) -> None:
+    with pytest.raises(InputError, match=r"has not the colour that was given: .* Check its place"):
+        Capture.from_reference(picture(colour), (60, 40), (200, 40, 30))
 
 
 def test_transparent_pixels_are_refused() -> None:
