@@ -89,6 +89,6 @@ class Residuals(NamedTuple):
 
 def join_residuals(parts: Sequence[Residuals]) -> Residuals:
     """Join the residuals of several batches."""
-    errors, deviations, *tones, known = zip(*parts, strict=True)
-    wide = torch.cat(errors, -1), torch.cat(deviations, -1)
-    return Residuals(*wide, torch.cat(tones[0]), torch.cat(tones[1]), torch.cat(known))
+    errors, deviations, tones, true_tones, known = zip(*parts, strict=True)
+    joined = (torch.cat(one, -1) for one in (errors, deviations, tones, true_tones))
+    return Residuals(*joined, known=torch.cat(known))
