@@ -81,14 +81,13 @@ class Residuals(NamedTuple):
 
     def _group_by_known(self) -> list[NDArray[np.bool_]]:
         """Nothing known, white without light, and light; those of them that there are."""
-        known: NDArray[np.bool_] = self.known.numpy() > 0
+        known = self.known.numpy() > 0
         light, white = known[:, _LIGHT], known[:, _WHITE]
-        groups: list[NDArray[np.bool_]] = [known.sum(1) == 0, white & ~light, light]
+        groups = [~known.any(1), white & ~light, light]
         return [one for one in groups if one.any()]
 
 
 def join_residuals(parts: Sequence[Residuals]) -> Residuals:
     """Join the residuals of several batches."""
-    errors, deviations, tones, true_tones, known = zip(*parts, strict=True)
-    joined = (torch.cat(one, -1) for one in (errors, deviations, tones, true_tones))
-    return Residuals(*joined, known=torch.cat(known))
+    *rest, known = zip(*parts, strict=True)
+    return Residuals(*(torch.cat(one, -1) for one in rest), torch.cat(known))
