@@ -14,7 +14,7 @@ from skinnet.network import (
     WHITE_BALANCE_MAX,
     SkinAutoencoder,
 )
-from skinnet.network._sd_factors import find_range
+from skinnet.network._tone_factors import find_range
 from skinnet.network.autoencoder import LOG_SD_RANGE
 from skinnet.physics import CAMERA_COMPONENTS, LIGHTS, Capture, SkinDecoder, to_display
 
@@ -107,7 +107,7 @@ class DecoderGraph(nn.Module):
 
 def describe_outputs(model: SkinAutoencoder) -> dict[str, Output]:
     """Describe the encoder's outputs, with the ranges of this model's standard deviations."""
-    least, most = find_range(model.sd_scale, model.sd_by_tone, model.sd_by_known)
+    least, most = find_range(model.sd_scale, model.sd_by_tone)
     low, high = LOG_SD_RANGE
     ranges = {
         "melanin_sd": [low * float(least[0, 0]), high * float(most[0, 0])],

@@ -2,10 +2,9 @@
 
 On synthetic validation faces in wide captures, half of which tell something of their capture, the
 standard deviations of pixels and of faces are scaled so that 90 % of the errors lie within the 90 %
-intervals, in each of six groups of the faces' true melanin, and where nothing, white or the light
-is known. The factors depend on the melanin that is read and on what is known. The share of the
-pixels' own variance that remains in the mean of a region is measured on squares of an eighth of the
-picture.
+intervals, in each of six groups of the faces' true melanin. The factors depend on the melanin that
+is read. The share of the pixels' own variance that remains in the mean of a region is measured on
+squares of an eighth of the picture.
 """
 
 import argparse
@@ -22,7 +21,7 @@ from torch import Tensor
 from skinnet.errors import InputError
 from skinnet.network import SkinAutoencoder
 from skinnet.network._means import log_fraction, log_mean
-from skinnet.network._sd_factors import find_factors, measure_tone
+from skinnet.network._tone_factors import find_factors, measure_tone
 from train.batch import Batch
 from train.residuals import Residuals, join_residuals
 from train.synthetic.faces import SyntheticFaces
@@ -42,7 +41,7 @@ class Evidence(NamedTuple):
 
 @torch.no_grad()
 def calibrate(model: SkinAutoencoder, batches: Iterable[Batch]) -> None:
-    """Set `sd_scale`, `sd_by_tone`, `sd_by_known` and `region_share` of a model, in place.
+    """Set `sd_scale`, `sd_by_tone` and `region_share` of a model, in place.
 
     Args:
         model: A trained model.
@@ -50,13 +49,11 @@ def calibrate(model: SkinAutoencoder, batches: Iterable[Batch]) -> None:
     """
     model.sd_scale.fill_(1)
     model.sd_by_tone.fill_(0)
-    model.sd_by_known.fill_(0)
     found = join([collect_evidence(model, batch) for batch in batches])
-    fitted = zip(*(one.find_scale() for one in (found.pixel, found.face)), strict=True)
-    scales = (model.sd_scale, model.sd_by_tone, model.sd_by_known)
-    for buffer, parts in zip(scales, fitted, strict=True):
-        buffer.copy_(torch.stack(parts))
-    factors = find_factors(found.region.tone, found.region.known, *scales)
+    scales, by_tone = zip(*(one.find_scale() for one in (found.pixel, found.face)), strict=True)
+    model.sd_scale.copy_(torch.stack(scales))
+    model.sd_by_tone.copy_(torch.stack(by_tone))
+    factors = find_factors(found.region.tone, model.sd_scale, model.sd_by_tone)
     pixel, face = factors[0] * found.region.deviation, factors[1] * found.region_face
     excess = (pixel**2 - face**2).clamp_min(0)
     observed = _squash(found.region.error) - face**2
@@ -82,38 +79,27 @@ def collect_evidence(model: SkinAutoencoder, batch: Batch) -> Evidence:
         [measure_tone(maps.melanin, maps.mask), log_mean(batch.truth.melanin, mask)]
     )
     shown = skin.sum((-2, -1)) > 50
-    own = torch.cat([tones, uncertainty.face.mT, _flag(model, batch).mT])
-    pixel = own[:, :, None, None].expand(-1, *skin.shape)[:, skin][:, ::97]
+    pixel = tones[:, :, None, None].expand(-1, *skin.shape)[:, skin][:, ::97]
     return Evidence(
-        _make_residuals(error[:, skin][:, ::97], spread[:, skin][:, ::97], pixel),
-        _make_residuals(torch.stack(means)[:, shown], uncertainty.face.mT[:, shown], own[:, shown]),
-        *_collect_regions(error, spread, skin, own),
+        Residuals(error[:, skin][:, ::97], spread[:, skin][:, ::97], *pixel),
+        Residuals(torch.stack(means)[:, shown], uncertainty.face.mT[:, shown], *tones[:, shown]),
+        *_collect_regions(error, spread, skin, torch.cat([tones, uncertainty.face.mT])),
     )
 
 
-def _flag(model: SkinAutoencoder, batch: Batch) -> Float[Tensor, "batch flags"]:
-    photograph = batch.photograph
-    return model.known.flag(model.known.complete(batch.known, len(photograph), photograph))
-
-
-def _make_residuals(error: Tensor, deviation: Tensor, own: Float[Tensor, "own count"]) -> Residuals:
-    """Residuals of what belongs to faces: both tones, both deviations, and the flags."""
-    return Residuals(error, deviation, own[0], own[1], own[4:].mT)
-
-
 def _collect_regions(
-    error: Tensor, spread: Tensor, skin: Tensor, of_faces: Float[Tensor, "own batch"]
+    error: Tensor, spread: Tensor, skin: Tensor, of_faces: Float[Tensor, "4 batch"]
 ) -> tuple[Residuals, Tensor]:
     """Residuals of squares of skin, and the deviations of their faces.
 
-    `of_faces` holds both tones of each face, both of its deviations, and the flags.
+    `of_faces` holds both tones of each face, and both of its deviations.
     """
     side = skin.shape[-1] // 8
     whole = F.avg_pool2d(skin[:, None].float(), side)[:, 0] > _LEAST_SKIN
     mean_error = F.avg_pool2d(error, side)[:, whole]
     mean_spread = F.avg_pool2d(spread**2, side).sqrt()[:, whole]
     own = of_faces[:, :, None, None].expand(-1, -1, *whole.shape[1:])[:, whole]
-    return _make_residuals(mean_error, mean_spread, own), own[2:4]
+    return Residuals(mean_error, mean_spread, *own[:2]), own[2:]
 
 
 def join(parts: Sequence[Evidence]) -> Evidence:
@@ -152,8 +138,7 @@ def main(argv: Sequence[str] | None = None) -> int:
         print(error, file=sys.stderr)
         return 2
     print(
-        f"{given.output}: scales {model.sd_scale.tolist()}, by what is known "
-        f"{model.sd_by_known.tolist()}, regions {model.region_share.tolist()}"
+        f"{given.output}: scales {model.sd_scale.tolist()}, regions {model.region_share.tolist()}"
     )
     return 0
 

@@ -8,11 +8,9 @@ from skinnet.physics._linear_algebra import invert_3x3
 from skinnet.physics.camera import CAMERA_COMPONENTS, LIGHTS, SpectralCamera, spectrum_to_srgb
 from skinnet.physics.capture import Capture
 
-FLAGS = 6
-"""Flags of light, temperature, camera, white balance, exposure and linear."""
-
-KNOWN_VALUES = len(LIGHTS) + 1 + CAMERA_COMPONENTS + 2 + 1 + FLAGS
-"""Values of light, temperature, camera, white balance and exposure, and the flags."""
+KNOWN_VALUES = len(LIGHTS) + 1 + CAMERA_COMPONENTS + 2 + 1 + 6
+"""Values of light, temperature, camera, white balance and exposure, and a flag for each and for
+linear."""
 
 _MIRED, _MIRED_SPREAD = 160.0, 40.0
 """Daylight of 6,250 K, and the spread over usual daylight, in mired."""
@@ -126,23 +124,17 @@ class KnownCapture(nn.Module):
         assert known.linear is not None and known.exposure is not None
         # Filled before they become columns: tools that quantise the network warn of columns of NaN.
         light, temperature, camera, balance = map(_fill, known[:4])
-        flags = self.flag(known)
-        mired = 1e6 / (temperature[:, None] + 1e6 / _MIRED * (1 - flags[:, 1:2]))
-        exposure = _fill(known.exposure)[:, None]
-        told = balance.clamp(-_MOST_TOLD, _MOST_TOLD)
-        parts = (light, (mired - _MIRED) / _MIRED_SPREAD, camera, 5 * told, exposure)
-        values = [part * flags[:, place, None] for place, part in enumerate(parts)]
-        return torch.cat([*values, flags], -1)
-
-    def flag(self, known: Capture) -> Float[Tensor, "batch flags"]:
-        """Flag by 1 what is known of captures, and by 0 what is not; the last is 1 for linear."""
-        assert known.linear is not None and known.exposure is not None
         vectors = (known.light, known.camera, known.white_balance)
         unknown = [part.isnan().any(-1, keepdim=True) for part in vectors]
         unknown.insert(1, known.temperature.isnan()[:, None])
         unknown.append(known.exposure.isnan()[:, None])
-        flags = [(~each).to(known.white_balance) for each in unknown]
-        return torch.cat([*flags, _fill(known.linear)[:, None]], -1)
+        mired = 1e6 / (temperature[:, None] + 1e6 / _MIRED * unknown[1])
+        exposure = _fill(known.exposure)[:, None]
+        told = balance.clamp(-_MOST_TOLD, _MOST_TOLD)
+        parts = (light, (mired - _MIRED) / _MIRED_SPREAD, camera, 5 * told, exposure)
+        flags = [(~each).to(balance) for each in unknown]
+        values = [part * flag for part, flag in zip(parts, flags, strict=True)]
+        return torch.cat([*values, *flags, _fill(known.linear)[:, None]], -1)
 
     def adopt(self, known: Capture, estimate: Capture) -> Capture:
         """Replace the estimate of light and camera where they are known, and add the balance."""

@@ -11,8 +11,8 @@ from kornia.color import rgb_to_linear_rgb
 from torch import Tensor, nn
 
 from skinnet.network._earlier_weights import EARLIER_FORMAT, upgrade_config, upgrade_weights
-from skinnet.network._known_capture import FLAGS, KNOWN_VALUES, KnownCapture
-from skinnet.network._sd_factors import find_factors, measure_tone
+from skinnet.network._known_capture import KNOWN_VALUES, KnownCapture
+from skinnet.network._tone_factors import find_factors, measure_tone
 from skinnet.network._weights import (
     SHIPPED_WEIGHTS,
     SavedModel,
@@ -208,8 +208,6 @@ class SkinAutoencoder(nn.Module):
             calibrated after training.
         sd_by_tone: How the logarithms of these factors change with the natural logarithm of the
             face's melanin: coefficients of it and of its square.
-        sd_by_known: How they change with what is known of the capture: coefficients of light,
-            temperature, camera, white balance, exposure and linear.
         region_share: Of melanin and hemoglobin: how much of the variance that pixels have beyond
             that of the face remains in the mean of a region; calibrated after training.
 
@@ -229,7 +227,6 @@ class SkinAutoencoder(nn.Module):
 
     sd_scale: Tensor
     sd_by_tone: Tensor
-    sd_by_known: Tensor
     region_share: Tensor
 
     def __init__(self, config: AutoencoderConfig | None = None) -> None:
@@ -243,7 +240,6 @@ class SkinAutoencoder(nn.Module):
         self.known = KnownCapture(self.decoder.camera, _sample_skin(self.decoder))
         self.register_buffer("sd_scale", torch.ones(2, 2))
         self.register_buffer("sd_by_tone", torch.zeros(2, 2, 2))
-        self.register_buffer("sd_by_known", torch.zeros(2, 2, FLAGS))
         self.register_buffer("region_share", torch.ones(2))
 
     @classmethod
@@ -271,9 +267,7 @@ class SkinAutoencoder(nn.Module):
             config = upgrade_config(saved.config) if earlier else saved.config
             model = cls(AutoencoderConfig(**{**config, "widths": tuple(config["widths"])}))
             own = model.state_dict()
-            state = upgrade_weights(saved.state, own) if earlier else saved.state
-            # Weights from before this buffer do not depend on what is known.
-            model.load_state_dict({"sd_by_known": own["sd_by_known"], **state})
+            model.load_state_dict(upgrade_weights(saved.state, own) if earlier else saved.state)
         model.trained_on = saved.trained_on
         return model.eval()
 
@@ -344,9 +338,7 @@ class SkinAutoencoder(nn.Module):
         capture = _activate_capture(global_outputs, self.config.white_balance_max)
         maps = _activate(raw_maps, linear)
         tone = measure_tone(maps.melanin.detach(), maps.mask.detach())
-        flags = self.known.flag(given)
-        scales = (self.sd_scale, self.sd_by_tone, self.sd_by_known)
-        factors = find_factors(tone, flags, *scales)
+        factors = find_factors(tone, self.sd_scale, self.sd_by_tone)
         uncertainty = _activate_uncertainty(raw_maps, global_outputs, factors)
         return maps, self.known.adopt(given, capture), uncertainty
 

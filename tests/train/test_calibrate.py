@@ -7,40 +7,31 @@ import pytest
 import torch
 
 from skinnet.network import AutoencoderConfig, SkinAutoencoder
-from skinnet.network._known_capture import FLAGS
 from train.calibrate import Evidence, _squash, calibrate, collect_evidence, join, main
 from train.residuals import Residuals
 from train.synthetic.faces import SyntheticFaces
 
 
 def make_residuals(
-    scale: tuple[float, float], by_tone: float = 0.0, by_light: float = 0.0, count: int = 20_000
+    scale: tuple[float, float], by_tone: float = 0.0, count: int = 20_000
 ) -> Residuals:
     rng = torch.Generator().manual_seed(0)
     deviation = 0.1 + torch.rand(2, count, generator=rng)
     tone = 3 * torch.rand(count, generator=rng) - 1.5
-    known = (torch.rand(count, FLAGS, generator=rng) < 0.4).float()
-    factor = torch.tensor(scale)[:, None] * (by_tone * tone + by_light * known[:, 0]).exp()
+    factor = torch.tensor(scale)[:, None] * (by_tone * tone).exp()
     error = factor * deviation * torch.randn(2, count, generator=rng)
-    return Residuals(error, deviation, tone, tone, known)
+    return Residuals(error, deviation, tone, tone)
 
 
 def test_the_scale_is_that_of_the_errors() -> None:
-    scale, by_tone, by_known = make_residuals((2.0, 0.5)).find_scale()
+    scale, by_tone = make_residuals((2.0, 0.5)).find_scale()
     torch.testing.assert_close(scale, torch.tensor([2.0, 0.5]), rtol=0.05, atol=0)
     torch.testing.assert_close(by_tone, torch.zeros(2, 2), rtol=0, atol=0.03)
-    torch.testing.assert_close(by_known, torch.zeros(2, FLAGS), rtol=0, atol=0.05)
-
-
-def test_a_known_light_has_its_scale() -> None:
-    scale, _, by_known = make_residuals((1.0, 1.0), by_light=-0.5).find_scale()
-    torch.testing.assert_close(scale, torch.ones(2), rtol=0.08, atol=0)
-    torch.testing.assert_close(by_known[:, 0], torch.full((2,), -0.5), rtol=0, atol=0.12)
 
 
 def test_each_tone_has_its_scale() -> None:
     residuals = make_residuals((2.0, 0.5), by_tone=0.4)
-    scale, by_tone, _ = residuals.find_scale()
+    scale, by_tone = residuals.find_scale()
     torch.testing.assert_close(by_tone, torch.tensor([[0.4, 0.0]] * 2), rtol=0, atol=0.06)
     factor = scale[:, None] * (by_tone @ torch.stack([residuals.tone, residuals.tone**2])).exp()
     inside = residuals.error.abs() < 1.6449 * factor * residuals.deviation
@@ -58,8 +49,8 @@ def test_the_share_of_a_region_is_what_remains_of_the_pixels_variance(
     region = (face**2 + share * (pixel**2 - face**2)).sqrt()
     error = region * torch.randn(2, count, generator=rng)
     right = make_residuals((1.0, 1.0))
-    tone, known = torch.zeros(count), torch.zeros(count, FLAGS)
-    found = Evidence(right, right, Residuals(error, pixel, tone, tone, known), face)
+    tone = torch.zeros(count)
+    found = Evidence(right, right, Residuals(error, pixel, tone, tone), face)
     monkeypatch.setattr("train.calibrate.collect_evidence", lambda *_: found)
     model = SkinAutoencoder(AutoencoderConfig(widths=(4, 6)))
     calibrate(model, [None])  # type: ignore[list-item]

@@ -1,4 +1,4 @@
-"""Factors on standard deviations, which are calibrated after training: by tone and by capture."""
+"""Factors on standard deviations by the tone of a face, which are calibrated after training."""
 
 import math
 
@@ -18,9 +18,6 @@ Scale = Float[Tensor, "2 2"]
 ByTone = Float[Tensor, "2 2 2"]
 """Coefficients of the tone and of its square in the logarithm of each factor."""
 
-ByKnown = Float[Tensor, "2 2 flags"]
-"""Coefficients of the flags of what is known of the capture in the same logarithm."""
-
 
 def measure_tone(melanin: Map, skin: Map) -> Float[Tensor, "batch"]:
     """Measure the natural logarithm of the mean melanin of skin, relative to .05."""
@@ -28,23 +25,17 @@ def measure_tone(melanin: Map, skin: Map) -> Float[Tensor, "batch"]:
 
 
 def find_factors(
-    tone: Float[Tensor, "count"],
-    known: Float[Tensor, "count flags"],
-    scale: Scale,
-    by_tone: ByTone,
-    by_known: ByKnown,
+    tone: Float[Tensor, "count"], scale: Scale, by_tone: ByTone
 ) -> Float[Tensor, "2 2 count"]:
     """Find the factors on standard deviations of pixels and faces, for each pigment."""
     linear, square = by_tone[..., None].unbind(2)
-    told = (by_known[:, :, None] * known).sum(-1)
-    return scale[..., None] * (linear * tone + square * tone**2 + told).exp()
+    return scale[..., None] * (linear * tone + square * tone**2).exp()
 
 
-def find_range(scale: Scale, by_tone: ByTone, by_known: ByKnown) -> tuple[Scale, Scale]:
-    """Find the smallest and largest factors over all tones and all that may be known."""
+def find_range(scale: Scale, by_tone: ByTone) -> tuple[Scale, Scale]:
+    """Find the smallest and largest factors over all tones."""
     linear, square = by_tone.unbind(2)
     turning = (-linear / (2 * square)).nan_to_num().clamp(*_TONES)
     tones = torch.stack([*map(torch.full_like, [scale] * 2, _TONES), turning])
     exponents = linear * tones + square * tones**2
-    low, high = by_known.clamp_max(0).sum(-1), by_known.clamp_min(0).sum(-1)
-    return scale * (exponents.amin(0) + low).exp(), scale * (exponents.amax(0) + high).exp()
+    return scale * exponents.amin(0).exp(), scale * exponents.amax(0).exp()
