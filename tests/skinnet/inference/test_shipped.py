@@ -35,7 +35,7 @@ def test_the_card_names_the_runs_that_trained_the_model() -> None:
     card = " ".join((MODELS / "MODEL_CARD.md").read_text(encoding="utf-8").split())
     trained_on = Decomposer().encoder.trained_on
     runs = re.findall(r"\d+ steps", trained_on)
-    places = [card.index(run) for run in runs]
+    places = [card.index(f" {run}") for run in runs]
     assert len(runs) == 14 and places == sorted(places)
     for setting in ("seed 0", "160 px"):
         assert setting in trained_on and setting in card
