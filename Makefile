@@ -3,7 +3,7 @@ PYTHON ?= $(or $(shell command -v python3.11),python3)
 BIN := .venv/bin
 READY := .venv/.ready
 
-.PHONY: demo test coverage test-fast test-lowest lint format bench wheel clean
+.PHONY: demo test coverage test-fast test-lowest lint format bench docs wheel clean
 
 demo: $(READY)
 	$(BIN)/python -m train fit --config configs/quick.yaml
@@ -55,6 +55,10 @@ bench: $(READY)
 	$(BIN)/python -m benchmarks.identifiability
 	$(BIN)/python -m benchmarks.charts
 	$(BIN)/python -m benchmarks.indices
+
+# The guide, as pages that open without a server: build/site/index.html.
+docs: $(READY)
+	NO_MKDOCS_2_WARNING=1 PYTHONPATH=. $(BIN)/python -m mkdocs build --strict --quiet
 
 wheel: $(READY)
 	$(BIN)/python -m build --wheel

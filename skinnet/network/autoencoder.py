@@ -35,7 +35,11 @@ F_BLOOD_MAX = F_BLOOD_RANGE[1]
 """About twice the paper's 7 %: lips and flushed cheeks hold more blood than other skin."""
 
 SHADING_MAX = 4.0
+"""Largest diffuse shading, relative to the light."""
+
 CAMERA_MAX = 3.0
+"""Largest absolute coefficient of the camera basis, in standard deviations."""
+
 WHITE_BALANCE_MAX = 0.9
 """Largest error of the white balance that is estimated, beyond what is known of it."""
 
