@@ -181,6 +181,19 @@ def test_the_readme_is_short() -> None:
     assert len(README.read_text(encoding="utf-8").split()) <= 900
 
 
+def test_the_readme_compares_as_the_model_card_does() -> None:
+    card = ROOT / "skinnet" / "inference" / "models" / "MODEL_CARD.md"
+    table = README.read_text(encoding="utf-8").partition("| | melanin | hemoglobin |")[2]
+    rows = [read_row(line) for line in table.splitlines()[2:7]]
+    assert len(rows) == 5 and all(len(row) == 3 for row in rows)
+    assert set(rows) <= {read_row(line) for line in card.read_text(encoding="utf-8").splitlines()}
+
+
+def read_row(line: str) -> tuple[str, ...]:
+    """Read the first number of each cell of a table, the name of the row aside."""
+    return tuple(cell.strip().partition(",")[0] for cell in line.split("|")[2:-1])
+
+
 def test_every_benchmark_is_listed() -> None:
     text = (ROOT / "docs" / "benchmarks.md").read_text(encoding="utf-8")
     for module in (ROOT / "benchmarks").glob("*.py"):
