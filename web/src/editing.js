@@ -1,0 +1,133 @@
+/** A change of skin as a change of colour, applied to a photograph of any size. */
+
+import { filterGaussian } from "./filters.js";
+import { clamp } from "./rounding.js";
+import { ResizedPlane } from "./resizing.js";
+import { LINEAR, toLevel, toLinear } from "./srgb.js";
+
+const RAMP_START = 0.1; // masks between which changes set in
+const RAMP_END = 0.9;
+const RATIO_OFFSET = 1e-3; // linear sRGB added to both colours of a ratio
+const LEAST_SHADING = 0.05; // so that ratios of shading stay finite
+const LEAST_CHANGE = 1e-6; // in linear sRGB; pixels that change by less keep their exact values
+const STRIP = 64; // rows that are edited at once, which bounds the memory
+const SHINE = 0.1; // specular reflection of which the colour is taken
+
+/**
+ * Factors of an edit: melanin, hemoglobin and shine are multiplied; shading is the exponent of its
+ * ratio to the mean, so that 0 makes the light even and 2 doubles its contrast.
+ */
+export const UNCHANGED = { melanin: 1, hemoglobin: 1, shading: 1, shine: 1 };
+
+/** Edits one reading: planes [height, width], capture, and weights that fade out at sides. */
+export class Editor {
+  constructor(networks, { planes, capture, width, height, fade }) {
+    Object.assign(this, { networks, planes, capture, width, height, fade });
+  }
+
+  /** The change of colours of an edit, as planes of the reading's size. */
+  async computeChange(factors) {
+    this.before ??= await this.decodeBare(UNCHANGED);
+    this.shine ??= await this.findShine();
+    const after = await this.decodeBare(factors);
+    return {
+      colours: this.compareColours(this.before, after),
+      shading: this.scaleShading(factors.shading),
+      shine: this.shine.map((value) => value * (factors.shine - 1)),
+    };
+  }
+
+  /** Linear colours of the skin alone, evenly lit, with its pigments multiplied. */
+  async decodeBare(factors, specular = 0) {
+    const { width, height, planes } = this;
+    const even = (value) => new Float32Array(width * height).fill(value);
+    const scale = (name) => planes[name].map((value) => clamp(value * factors[name], 0, 1));
+    const bare = {
+      melanin: scale("melanin"),
+      hemoglobin: scale("hemoglobin"),
+      shading: even(1),
+      specular: even(specular),
+    };
+    const image = await this.networks.decode(bare, this.capture, width, height);
+    return image.map((value) => toLinear(clamp(value, 0, 1)));
+  }
+
+  /** The colour of a specular reflection of 1, which is that of the light in the photograph. */
+  async findShine() {
+    const shiny = await this.decodeBare(UNCHANGED, SHINE);
+    const sums = [0, 0, 0];
+    shiny.forEach((value, at) => {
+      sums[at % 3] += value - this.before[at];
+    });
+    return sums.map((sum) => (3 * sum) / (SHINE * shiny.length));
+  }
+
+  /** Losses and gains of red, green and blue, smoothed over the skin. */
+  compareColours(before, after) {
+    const { width, height, planes } = this;
+    const changes = Array.from({ length: 6 }, () => new Float32Array(width * height));
+    for (let at = 0; at < width * height; at++) {
+      const sum = before[3 * at] + before[3 * at + 1] + before[3 * at + 2] + RATIO_OFFSET;
+      for (let channel = 0; channel < 3; channel++) {
+        const [old, changed] = [before[3 * at + channel], after[3 * at + channel]];
+        const ratio = (changed + RATIO_OFFSET) / (old + RATIO_OFFSET);
+        changes[channel][at] = Math.min(ratio, 1) - 1;
+        changes[3 + channel][at] = Math.max(changed - old, 0) / sum;
+      }
+    }
+    const weight = planes.mask.map((value) => value + 1e-4);
+    const smooth = (plane) => filterGaussian(plane, width, height, 1);
+    const share = smooth(weight);
+    return changes.map((change) =>
+      smooth(change.map((value, at) => value * weight[at])).map((value, at) => value / share[at]),
+    );
+  }
+
+  /** What shading is multiplied by. */
+  scaleShading(exponent) {
+    const { shading, mask } = this.planes;
+    let sum = 0;
+    let total = 0;
+    shading.forEach((value, at) => {
+      sum += mask[at] * value;
+      total += mask[at];
+    });
+    const mean = Math.max(sum / Math.max(total, 1e-6), LEAST_SHADING);
+    return shading.map((value) => (Math.max(value, LEAST_SHADING) / mean) ** (exponent - 1));
+  }
+
+  /** Change the pixels of a raster that shows the reading's rectangle, by a mask for its rows. */
+  apply(raster, mask, { colours, shading, shine }) {
+    const planes = [...colours, this.planes.specular, shading, this.fade].map(
+      (plane) => new ResizedPlane(plane, this.width, this.height, raster.width, raster.height),
+    );
+    for (let first = 0; first < raster.height; first += STRIP) {
+      const last = Math.min(first + STRIP, raster.height);
+      const rows = planes.map((plane) => plane.readRows(first, last));
+      const weights = mask.readRows(raster, first, last);
+      changePixels(raster, first * raster.width, rows, weights, shine);
+    }
+  }
+}
+
+/** Change pixels from a place on; the rows are six changes of colour, specular, shading and fade. */
+function changePixels({ data, channels }, place, rows, weights, shine) {
+  const [specular, ratio, fade] = rows.slice(6);
+  const diffuse = [0, 0, 0];
+  for (let at = 0; at < weights.length; at++) {
+    const weight = clamp((weights[at] * fade[at] - RAMP_START) / (RAMP_END - RAMP_START), 0, 1);
+    if (weight === 0) continue;
+    const start = (place + at) * channels;
+    for (let channel = 0; channel < 3; channel++) {
+      diffuse[channel] = Math.max(0, LINEAR[data[start + channel]] - specular[at]);
+    }
+    const sum = diffuse[0] + diffuse[1] + diffuse[2];
+    for (let channel = 0; channel < 3; channel++) {
+      const added = rows[channel][at] * diffuse[channel] + rows[3 + channel][at] * sum;
+      const lit = (diffuse[channel] + added) * ratio[at] - diffuse[channel];
+      const change = weight * (lit + shine[channel] * specular[at]);
+      if (Math.abs(change) < LEAST_CHANGE) continue;
+      data[start + channel] = toLevel(LINEAR[data[start + channel]] + change);
+    }
+  }
+}
