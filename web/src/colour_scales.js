@@ -89,14 +89,14 @@ export function colourPlace({ colours }, place) {
   );
 }
 
-/** Colour a plane, transparent where the mask is low: red, green, blue and alpha. */
+/** Colour a plane, transparent where the mask is below .1: red, green, blue and alpha. */
 export function colourPlane(scale, plane, mask) {
   const table = Array.from({ length: 1025 }, (_, step) => colourPlace(scale, step / 1024));
   const data = new Uint8ClampedArray(4 * plane.length);
   plane.forEach((value, at) => {
     const step = Math.round(1024 * Math.min(1, Math.max(0, placeValue(scale, value))));
     data.set(table[step], 4 * at);
-    data[4 * at + 3] = 255 * Math.min(1, Math.max(0, 2 * mask[at]));
+    data[4 * at + 3] = 255 * Math.min(1, Math.max(0, (mask[at] - 0.1) / 0.8));
   });
   return data;
 }

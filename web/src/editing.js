@@ -3,7 +3,7 @@
 import { filterGaussian } from "./filters.js";
 import { clamp } from "./rounding.js";
 import { ResizedPlane } from "./resizing.js";
-import { LINEAR, toLevel, toLinear } from "./srgb.js";
+import { LINEAR, toLevel, toLinearFast } from "./srgb.js";
 
 const RAMP_START = 0.1; // masks between which changes set in
 const RAMP_END = 0.9;
@@ -49,7 +49,7 @@ export class Editor {
       specular: even(specular),
     };
     const image = await this.networks.decode(bare, this.capture, width, height);
-    return image.map((value) => toLinear(clamp(value, 0, 1)));
+    return image.map(toLinearFast);
   }
 
   /** The colour of a specular reflection of 1, which is that of the light in the photograph. */
@@ -96,37 +96,52 @@ export class Editor {
     return shading.map((value) => (Math.max(value, LEAST_SHADING) / mean) ** (exponent - 1));
   }
 
-  /** Change the pixels of a raster that shows the reading's rectangle, by a mask for its rows. */
-  apply(raster, mask, { colours, shading, shine }) {
-    const planes = [...colours, this.planes.specular, shading, this.fade].map(
-      (plane) => new ResizedPlane(plane, this.width, this.height, raster.width, raster.height),
-    );
+  /**
+   * Change the pixels of a raster that shows the reading's rectangle.
+   * @param {Map} [known] weights and specular of this raster and mask, kept from one edit to the next
+   */
+  apply(raster, mask, { colours, shading, shine }, known = null) {
+    const enlarge = (plane) =>
+      new ResizedPlane(plane, this.width, this.height, raster.width, raster.height);
+    const planes = [...colours, shading].map(enlarge);
+    const [specular, fade] = [this.planes.specular, this.fade].map(enlarge);
     for (let first = 0; first < raster.height; first += STRIP) {
       const last = Math.min(first + STRIP, raster.height);
+      const fixed = known?.get(first) ?? {
+        weights: weigh(mask.readRows(raster, first, last), fade.readRows(first, last)),
+        specular: specular.readRows(first, last),
+      };
+      known?.set(first, fixed);
       const rows = planes.map((plane) => plane.readRows(first, last));
-      const weights = mask.readRows(raster, first, last);
-      changePixels(raster, first * raster.width, rows, weights, shine);
+      changePixels(raster, first * raster.width, rows, fixed, shine);
     }
   }
 }
 
-/** Change pixels from a place on; the rows are six changes of colour, specular, shading and fade. */
-function changePixels({ data, channels }, place, rows, weights, shine) {
-  const [specular, ratio, fade] = rows.slice(6);
-  const diffuse = [0, 0, 0];
+/** Weights that rise from 0 to 1 where the mask, times the fade, does from .1 to .9. */
+function weigh(mask, fade) {
+  return mask.map((value, at) =>
+    clamp((value * fade[at] - RAMP_START) / (RAMP_END - RAMP_START), 0, 1),
+  );
+}
+
+/** Change pixels from a place on; the rows are six changes of colour, and of shading. */
+function changePixels({ data, channels }, place, rows, { weights, specular }, shine) {
+  const ratio = rows[6];
   for (let at = 0; at < weights.length; at++) {
-    const weight = clamp((weights[at] * fade[at] - RAMP_START) / (RAMP_END - RAMP_START), 0, 1);
+    const weight = weights[at];
     if (weight === 0) continue;
     const start = (place + at) * channels;
+    const red = Math.max(0, LINEAR[data[start]] - specular[at]);
+    const green = Math.max(0, LINEAR[data[start + 1]] - specular[at]);
+    const blue = Math.max(0, LINEAR[data[start + 2]] - specular[at]);
+    const sum = red + green + blue;
     for (let channel = 0; channel < 3; channel++) {
-      diffuse[channel] = Math.max(0, LINEAR[data[start + channel]] - specular[at]);
-    }
-    const sum = diffuse[0] + diffuse[1] + diffuse[2];
-    for (let channel = 0; channel < 3; channel++) {
-      const added = rows[channel][at] * diffuse[channel] + rows[3 + channel][at] * sum;
-      const lit = (diffuse[channel] + added) * ratio[at] - diffuse[channel];
+      const diffuse = channel === 0 ? red : channel === 1 ? green : blue;
+      const added = rows[channel][at] * diffuse + rows[3 + channel][at] * sum;
+      const lit = (diffuse + added) * ratio[at] - diffuse;
       const change = weight * (lit + shine[channel] * specular[at]);
-      if (Math.abs(change) < LEAST_CHANGE) continue;
+      if (change > -LEAST_CHANGE && change < LEAST_CHANGE) continue;
       data[start + channel] = toLevel(LINEAR[data[start + channel]] + change);
     }
   }

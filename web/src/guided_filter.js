@@ -22,16 +22,18 @@ export class GuidedPlane {
 
   /** Rows from the first up to, without, the last; the photograph's must not be changed yet. */
   readRows(photo, first, last) {
-    const rows = this.planes.map((plane) => plane.readRows(first, last));
-    const start = first * photo.width;
-    return rows[3].map((intercept, at) => {
-      const pixel = (start + at) * photo.channels;
-      const sum = [0, 1, 2].reduce(
-        (total, channel) => total + rows[channel][at] * GUIDE[photo.data[pixel + channel]],
-        intercept,
-      );
-      return Math.min(1, Math.max(0, sum));
-    });
+    const [red, green, blue, sum] = this.planes.map((plane) => plane.readRows(first, last));
+    const { data, channels } = photo;
+    let pixel = first * photo.width * channels;
+    for (let at = 0; at < sum.length; at++, pixel += channels) {
+      const value =
+        sum[at] +
+        red[at] * GUIDE[data[pixel]] +
+        green[at] * GUIDE[data[pixel + 1]] +
+        blue[at] * GUIDE[data[pixel + 2]];
+      sum[at] = Math.min(1, Math.max(0, value));
+    }
+    return sum;
   }
 }
 

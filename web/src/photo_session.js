@@ -6,13 +6,14 @@ import { Editor } from "./editing.js";
 import { findFaces } from "./face_finder.js";
 import { GuidedPlane } from "./guided_filter.js";
 import { cropHead, cutHead, fadeEdges, turnBack } from "./head_crop.js";
-import { cropRaster, dropAlpha } from "./raster.js";
+import { cropRaster } from "./raster.js";
 import { ResizedPlane, resize } from "./resizing.js";
 import { roundHalfEven } from "./rounding.js";
 import { averageSkin, findInterval, isSkin, listDoubts } from "./uncertainty.js";
 import { measureWhite } from "./white_reference.js";
 
 const VIEW = 1024; // longest side, in pixels, of the photograph as the page shows it
+const HEAD_VIEW = 512; // the same of the rectangle that is read and edited
 const LEAST_FACE = 24; // width of a face, in pixels
 const GREY = 6; // most difference of the channels in a photograph without colour
 const EDGE_RADIUS = 1; // of the guided filter of the mask, in pixels of the network
@@ -55,17 +56,18 @@ export class PhotoSession {
     const notes = listDoubts(cut, upright.mask, faceSd, [...capture.white_balance], white !== null);
     this.reading = { ...turned, crop, capture, faceSd, fade, notes, face };
     this.editor = new Editor(networks, this.reading);
-    this.viewBox = this.scaleBox(crop.box);
-    this.viewMask = this.makeMask(this.view, this.viewBox);
+    this.head = this.makeHeadView();
+    this.headMask = this.makeMask(this.head);
+    this.known = new Map();
     return this.describeReading();
   }
 
-  /** Edit the view: the pixels of the reading's rectangle, and where it is. */
+  /** Edit the view of the reading's rectangle. */
   async editView(factors) {
     const change = await this.editor.computeChange(factors);
-    const part = cropRaster(this.view, this.viewBox);
-    this.editor.apply(part, this.viewMask, change);
-    return { box: this.viewBox, part };
+    const head = { ...this.head, data: this.head.data.slice() };
+    this.editor.apply(head, this.headMask, change, this.known);
+    return head;
   }
 
   /** The whole photograph, edited, as a PNG file. */
@@ -73,7 +75,7 @@ export class PhotoSession {
     const { photo, reading, editor } = this;
     const { box } = reading.crop;
     const part = cropRaster(photo, box);
-    editor.apply(part, this.makeMask(photo, box), await editor.computeChange(factors));
+    editor.apply(part, this.makeMask(part), await editor.computeChange(factors));
     const canvas = new OffscreenCanvas(photo.width, photo.height);
     const context = canvas.getContext("2d");
     context.putImageData(toImageData(photo), 0, 0);
@@ -107,28 +109,27 @@ export class PhotoSession {
     }
   }
 
-  makeMask(picture, box) {
+  /** The mask of a picture of the reading's rectangle. */
+  makeMask(part) {
     const { planes, width, height } = this.reading;
-    const part = dropAlpha(cropRaster(picture, box));
     return new GuidedPlane(part, planes.mask, width, height, EDGE_RADIUS, EDGE_VARIANCE);
   }
 
-  scaleBox(box) {
-    const { width, height } = this.view;
-    const scale = (value, end) => Math.min(end, Math.max(0, Math.round(value * this.scale)));
-    return {
-      left: scale(box.left, width - 1),
-      top: scale(box.top, height - 1),
-      right: scale(box.right, width),
-      bottom: scale(box.bottom, height),
-    };
+  makeHeadView() {
+    const part = cropRaster(this.photo, this.reading.crop.box);
+    const scale = HEAD_VIEW / Math.max(part.width, part.height);
+    if (scale >= 1) return part;
+    const [width, height] = [part.width, part.height].map((side) => Math.round(side * scale));
+    return resize(part, Math.max(1, width), Math.max(1, height));
   }
 
   describeReading() {
     const { planes, width, height, crop, notes } = this.reading;
     const shown = [...Object.keys(SCALES), "mask"];
     const copies = Object.fromEntries(shown.map((name) => [name, planes[name].slice()]));
-    return { planes: copies, width, height, box: crop.box, notes, means: this.computeMeans() };
+    const head = { ...this.head, data: this.head.data.slice() };
+    const means = this.computeMeans();
+    return { planes: copies, width, height, box: crop.box, head, notes, means };
   }
 
   /** Means over the skin with their intervals of 90 %; null without skin. */

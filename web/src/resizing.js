@@ -3,6 +3,8 @@
 import { makeBlank, makeRaster } from "./raster.js";
 
 const PRECISION = 22; // bits of Pillow's weights of 8-bit pixels
+const ONE = 2 ** PRECISION;
+const HALF = ONE / 2;
 
 const REDUCING_GAP = 3; // images are first averaged over squares if they shrink by more
 
@@ -75,18 +77,21 @@ function computeWeights(length, end, size) {
 
 function resampleRows(raster, places) {
   const { width, height, channels, data } = raster;
-  const { rounded, finish } = makeArithmetic(data, places);
+  const rounded = roundWeights(data, places);
   const wide = makeBlank(raster, places.length, height);
+  const isFloat = data instanceof Float32Array;
   let to = 0;
   for (let row = 0; row < height; row++) {
-    for (const { first, weights } of rounded) {
+    for (let column = 0; column < rounded.length; column++) {
+      const weights = rounded[column].weights;
+      const start = (row * width + rounded[column].first) * channels;
       for (let channel = 0; channel < channels; channel++) {
         let sum = 0;
-        let at = (row * width + first) * channels + channel;
+        let at = start + channel;
         for (let index = 0; index < weights.length; index++, at += channels) {
           sum += data[at] * weights[index];
         }
-        wide.data[to++] = finish(sum);
+        wide.data[to++] = isFloat ? sum : toByte(sum);
       }
     }
   }
@@ -95,33 +100,33 @@ function resampleRows(raster, places) {
 
 function resampleColumns(raster, places) {
   const { width, channels, data } = raster;
-  const { rounded, finish } = makeArithmetic(data, places);
+  const rounded = roundWeights(data, places);
   const length = width * channels;
   const tall = makeBlank(raster, width, places.length);
-  let to = 0;
-  for (const { first, weights } of rounded) {
-    for (let place = 0; place < length; place++) {
-      let sum = 0;
-      let at = first * length + place;
-      for (let index = 0; index < weights.length; index++, at += length) {
-        sum += data[at] * weights[index];
-      }
-      tall.data[to++] = finish(sum);
+  const isFloat = data instanceof Float32Array;
+  const sums = new Float64Array(length);
+  rounded.forEach(({ first, weights }, row) => {
+    sums.fill(0);
+    for (let index = 0; index < weights.length; index++) {
+      const weight = weights[index];
+      const start = (first + index) * length;
+      for (let at = 0; at < length; at++) sums[at] += data[start + at] * weight;
     }
-  }
+    const start = row * length;
+    for (let at = 0; at < length; at++) tall.data[start + at] = isFloat ? sums[at] : toByte(sums[at]);
+  });
   return tall;
 }
 
 /** 8-bit pixels are summed with integer weights, others in double precision. */
-function makeArithmetic(data, places) {
-  if (data instanceof Float32Array) return { rounded: places, finish: (sum) => sum };
-  const whole = (weight) => Math.trunc(0.5 + weight * 2 ** PRECISION);
-  const rounded = places.map(({ first, weights }) => ({ first, weights: weights.map(whole) }));
-  const half = 2 ** (PRECISION - 1);
-  return {
-    rounded,
-    finish: (sum) => Math.min(255, Math.max(0, Math.floor((sum + half) / 2 ** PRECISION))),
-  };
+function roundWeights(data, places) {
+  if (data instanceof Float32Array) return places;
+  const whole = (weight) => Math.trunc(0.5 + weight * ONE);
+  return places.map(({ first, weights }) => ({ first, weights: weights.map(whole) }));
+}
+
+function toByte(sum) {
+  return Math.min(255, Math.max(0, Math.floor((sum + HALF) / ONE)));
 }
 
 /** A plane of floats resized bilinearly, of which some rows at a time are made, to save memory. */

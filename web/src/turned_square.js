@@ -59,8 +59,9 @@ function findBounds(square, photo) {
 /** Bilinear interpolation as in Pillow: values are cut off, not rounded. */
 function interpolate(part, [a, b, c, d, e, f], cut) {
   const { width, height, channels, data } = part;
+  let to = 0;
   for (let row = 0; row < cut.height; row++) {
-    for (let column = 0; column < cut.width; column++) {
+    for (let column = 0; column < cut.width; column++, to += 3) {
       const x = a * (column + 0.5) + b * (row + 0.5) + c;
       const y = d * (column + 0.5) + e * (row + 0.5) + f;
       if (x < 0 || x >= width || y < 0 || y >= height) continue;
@@ -68,14 +69,16 @@ function interpolate(part, [a, b, c, d, e, f], cut) {
       const top = Math.floor(y - 0.5);
       const dx = x - 0.5 - left;
       const dy = y - 0.5 - top;
-      const columns = [clamp(left, 0, width - 1), clamp(left + 1, 0, width - 1)];
       const first = clamp(top, 0, height - 1) * width;
-      const second = top + 1 >= 0 && top + 1 < height ? (top + 1) * width : first;
+      const second = top + 1 < height ? (top + 1) * width : first;
+      const near = clamp(left, 0, width - 1);
+      const far = clamp(left + 1, 0, width - 1);
       for (let channel = 0; channel < 3; channel++) {
-        const read = (line, at) => data[(line + columns[at]) * channels + channel];
-        const upper = read(first, 0) + (read(first, 1) - read(first, 0)) * dx;
-        const lower = read(second, 0) + (read(second, 1) - read(second, 0)) * dx;
-        cut.data[(row * cut.width + column) * 3 + channel] = upper + (lower - upper) * dy;
+        const upperNear = data[(first + near) * channels + channel];
+        const lowerNear = data[(second + near) * channels + channel];
+        const upper = upperNear + (data[(first + far) * channels + channel] - upperNear) * dx;
+        const lower = lowerNear + (data[(second + far) * channels + channel] - lowerNear) * dx;
+        cut.data[to + channel] = upper + (lower - upper) * dy;
       }
     }
   }

@@ -1,0 +1,262 @@
+/** The page: opens a photograph, shows what is read of it, and edits it. */
+
+import { SCALES } from "./colour_scales.js";
+import { EditPanel } from "./edit_panel.js";
+import { MapView } from "./map_view.js";
+import { PictureView } from "./picture_view.js";
+import { Latest, Reader } from "./reader.js";
+import { ValueTable, describeReading, describeValues, readValues } from "./value_table.js";
+
+const find = (id) => document.getElementById(id);
+
+const HELP = {
+  probe: "Move over the photograph or a map to read values. With the keyboard: arrow keys, with " +
+    "Shift in larger steps.",
+  white: "Click on something white or grey that is lit as the face is, such as paper or a wall. " +
+    "With the keyboard: arrow keys, then Enter.",
+  box: "Draw a square around a face, from the brows to the chin. With the keyboard: arrow keys " +
+    "move it, plus and minus resize it, Enter reads it.",
+};
+
+const SHOWN_MAPS = Object.keys(SCALES);
+
+class Page {
+  constructor() {
+    this.reader = new Reader();
+    this.picture = new PictureView(find("photo"), {
+      onPoint: (point, isByKey) => this.setPoint(point, isByKey),
+      onPick: (point) => this.pickWhite({ x: point[0], y: point[1] }),
+      onMark: (box) => this.readBox(box),
+      onDivide: (share) => this.divide(share),
+    });
+    this.maps = SHOWN_MAPS.map((name) => new MapView(name, (point) => this.setPoint(point, false)));
+    find("map-grid").append(...this.maps.map((map) => map.element));
+    this.table = new ValueTable(find("values").tBodies[0]);
+    this.editing = new Latest((factors) => this.edit(factors));
+    this.panel = new EditPanel(find("sliders"), find("undo"), find("reset"), (factors) =>
+      this.attempt(() => this.editing.run(factors)),
+    );
+    this.listen();
+    this.setTool("probe");
+    this.attempt(async () => {
+      await this.reader.call("open");
+      if (!this.photo) this.say("Ready: choose a photograph, or try the sample.");
+    });
+  }
+
+  listen() {
+    find("file").addEventListener("change", ({ target }) => {
+      if (target.files[0]) this.open(target.files[0], target.files[0].name);
+      target.value = "";
+    });
+    find("sample").addEventListener("click", () => this.openSample());
+    find("faces").addEventListener("change", ({ target }) => this.readFace(Number(target.value)));
+    find("clear-white").addEventListener("click", () => this.pickWhite(null));
+    find("divider").addEventListener("input", ({ target }) =>
+      this.picture.setShare(target.value / 100),
+    );
+    find("tools").addEventListener("change", ({ target }) => this.setTool(target.value));
+    find("zoom").addEventListener("change", ({ target }) => this.zoom(target.checked));
+    find("save-photo").addEventListener("click", () => this.savePhoto());
+    find("save-maps").addEventListener("click", () => this.saveMaps());
+    find("edit").addEventListener("submit", (event) => event.preventDefault());
+    addEventListener("paste", ({ clipboardData }) => this.openFirst(clipboardData.files));
+    addEventListener("keydown", (event) => {
+      if ((event.ctrlKey || event.metaKey) && event.key === "z") this.panel.goBack();
+    });
+    this.listenToDrops();
+  }
+
+  listenToDrops() {
+    const show = (isShown) => { find("drop").hidden = !isShown; };
+    addEventListener("dragover", (event) => { event.preventDefault(); show(true); });
+    addEventListener("dragleave", (event) => { if (!event.relatedTarget) show(false); });
+    addEventListener("drop", (event) => {
+      event.preventDefault();
+      show(false);
+      this.openFirst(event.dataTransfer.files);
+    });
+  }
+
+  openFirst(files) {
+    if (files.length) this.open(files[0], files[0].name);
+  }
+
+  openSample() {
+    return this.attempt(async () => {
+      const response = await fetch("samples/astronaut.png");
+      if (!response.ok) throw new Error("The sample is missing; start the page again.");
+      await this.open(await response.blob(), "astronaut.png");
+    });
+  }
+
+  open(blob, name) {
+    return this.attempt(async () => {
+      this.say(`Reading ${name}…`);
+      const photo = await this.reader.call("readPhoto", { blob, name });
+      Object.assign(this, { photo, reading: null, white: null, read: null });
+      this.panel.clear();
+      this.picture.setPhoto(photo);
+      find("work").hidden = false;
+      find("maps").hidden = true;
+      find("clear-white").hidden = true;
+      this.say("Looking for faces…");
+      const { faces, largest } = await this.reader.call("findFaces");
+      this.faces = faces;
+      this.listFaces(faces, largest);
+      this.zoom(faces.length > 0);
+      if (!faces.length) {
+        this.chooseTool("box");
+        throw new Error(`No face was found in ${name}. Mark one by a square around it.`);
+      }
+      await this.readFace(largest);
+    });
+  }
+
+  listFaces(faces, largest) {
+    this.picture.setFaces(faces, largest);
+    const options = faces.map((_, index) => new Option(`${index + 1} of ${faces.length}`, index));
+    find("faces").replaceChildren(...options);
+    find("faces").value = largest;
+    find("face-choice").hidden = faces.length < 2;
+  }
+
+  readFace(index) {
+    return this.readBy(() => {
+      this.picture.setFaces(this.faces, index);
+      return ["readFace", { face: this.faces[index] }];
+    });
+  }
+
+  readBox(box) {
+    return this.readBy(() => {
+      this.chooseTool("probe");
+      return ["readBox", { box }];
+    });
+  }
+
+  pickWhite(white) {
+    return this.attempt(async () => {
+      const former = this.white;
+      this.white = white;
+      try {
+        if (this.read) await this.readAgain();
+      } catch (error) {
+        this.white = former;
+        throw error;
+      }
+      find("clear-white").hidden = !white;
+      if (white) this.chooseTool("probe");
+    });
+  }
+
+  readBy(choose) {
+    return this.attempt(async () => {
+      this.read = choose();
+      await this.readAgain();
+    });
+  }
+
+  /** Read what was chosen last, with the white that was picked. */
+  async readAgain() {
+    this.say("Reading the skin…");
+    const [call, options] = this.read;
+    const reading = await this.reader.call(call, { ...options, white: this.white });
+    this.showReading(reading);
+    if (this.panel.isChanged) await this.editing.run(this.panel.factors);
+    this.say(describeReading(this.photo.name, reading, this.white !== null));
+  }
+
+  showReading(reading) {
+    this.reading = reading;
+    find("maps").hidden = false;
+    this.maps.forEach((map) => map.setReading(reading));
+    this.table.setReading(reading);
+    this.picture.setReading(reading);
+    find("notes").replaceChildren(
+      ...reading.notes.map((note) => {
+        const item = document.createElement("li");
+        item.textContent = note;
+        return item;
+      }),
+    );
+  }
+
+  setPoint(point, isByKey) {
+    this.picture.setPoint(point);
+    if (!this.reading) return;
+    this.table.setPoint(point);
+    this.maps.forEach((map) => map.setPoint(point));
+    if (isByKey) this.say(describeValues(readValues(this.reading, point)));
+  }
+
+  async edit(factors) {
+    if (!this.reading) return;
+    const head = await this.reader.call("edit", { factors });
+    this.picture.setEdited(this.panel.isChanged ? head : null);
+  }
+
+  zoom(isZoomed) {
+    find("zoom").checked = isZoomed;
+    this.picture.setZoom(isZoomed);
+  }
+
+  divide(share) {
+    find("divider").value = 100 * share;
+    this.picture.setShare(share);
+  }
+
+  setTool(tool) {
+    this.picture.setTool(tool);
+    find("tool-help").textContent = HELP[tool];
+  }
+
+  chooseTool(tool) {
+    document.querySelector(`#tools [value=${tool}]`).checked = true;
+    this.setTool(tool);
+  }
+
+  savePhoto() {
+    return this.attempt(async () => {
+      if (!this.reading) throw new Error("Nothing is read yet; mark a face first.");
+      const blob = await this.reader.call("writePhoto", { factors: this.panel.factors });
+      save(blob, `${removeSuffix(this.photo.name)}_edited.png`);
+    });
+  }
+
+  saveMaps() {
+    return this.attempt(async () => {
+      save(await this.reader.call("writeMaps"), `${removeSuffix(this.photo.name)}_maps.zip`);
+    });
+  }
+
+  say(sentence) {
+    find("status").textContent = sentence;
+  }
+
+  /** Run an action, and show its error as a sentence. */
+  async attempt(action) {
+    find("error").hidden = true;
+    try {
+      await action();
+    } catch (error) {
+      this.say("");
+      find("error").textContent = error.message;
+      find("error").hidden = false;
+    }
+  }
+}
+
+function save(blob, name) {
+  const link = document.createElement("a");
+  link.href = URL.createObjectURL(blob);
+  link.download = name;
+  link.click();
+  setTimeout(() => URL.revokeObjectURL(link.href), 1000);
+}
+
+function removeSuffix(name) {
+  return name.replace(/\.[^.]*$/, "") || "photograph";
+}
+
+new Page();
