@@ -25,14 +25,14 @@ const SD_NAMES = ["melanin_sd", "hemoglobin_sd"];
 
 /** Open all networks of a page whose address is `root`. */
 export async function openNetworks(root) {
-  const isolated = globalThis.crossOriginIsolated;
-  ort.env.wasm.numThreads = isolated ? Math.min(MOST_THREADS, navigator.hardwareConcurrency) : 1;
-  ort.env.wasm.wasmPaths = { wasm: new URL("runtime/ort-wasm-simd-threaded.wasm", root).href };
-  ort.env.logLevel = "error";
   const fetched = Object.entries(FILES).map(async ([name, file]) => [
     name,
     await fetchBytes(new URL(file, root)),
   ]);
+  const isolated = globalThis.crossOriginIsolated;
+  ort.env.wasm.numThreads = isolated ? Math.min(MOST_THREADS, navigator.hardwareConcurrency) : 1;
+  ort.env.wasm.wasmBinary = await fetchRuntime(root);
+  ort.env.logLevel = "error";
   const sessions = {};
   let metadata = {};
   for (const each of fetched) {
@@ -43,12 +43,22 @@ export async function openNetworks(root) {
   return new Networks(sessions, metadata);
 }
 
+/** The WebAssembly, which is kept compressed. */
+async function fetchRuntime(root) {
+  const { body } = await fetchFile(new URL("runtime/ort-wasm-simd-threaded.wasm.gz", root));
+  return new Response(body.pipeThrough(new DecompressionStream("gzip"))).arrayBuffer();
+}
+
 async function fetchBytes(address) {
+  return new Uint8Array(await (await fetchFile(address)).arrayBuffer());
+}
+
+async function fetchFile(address) {
   const response = await fetch(address);
   if (!response.ok) {
     throw new Error(`${address.pathname} is missing (${response.status}); start the page again.`);
   }
-  return new Uint8Array(await response.arrayBuffer());
+  return response;
 }
 
 function openSession(name, bytes) {

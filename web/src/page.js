@@ -32,7 +32,7 @@ class Page {
     this.maps = SHOWN_MAPS.map((name) => new MapView(name, (point) => this.setPoint(point, false)));
     find("map-grid").append(...this.maps.map((map) => map.element));
     this.table = new ValueTable(find("values").tBodies[0]);
-    this.editing = new Latest((factors) => this.edit(factors));
+    this.editing = new Latest((factors) => this.edit(factors), find("photo"));
     this.panel = new EditPanel(find("sliders"), find("undo"), find("reset"), (factors) =>
       this.attempt(() => this.editing.run(factors)),
     );

@@ -109,6 +109,7 @@ export class PictureView {
   drawDivider() {
     const { context, canvas } = this;
     const place = Math.round(this.share * canvas.width);
+    if (place <= 0) return;
     context.save();
     context.beginPath();
     context.rect(0, 0, place, canvas.height);
@@ -200,7 +201,7 @@ export class PictureView {
 
   /** Arrow keys move the point or the box; plus and minus resize the box; Enter does it. */
   type(event) {
-    if (!this.before || event.ctrlKey || event.metaKey || event.altKey) return;
+    if (!this.view || event.ctrlKey || event.metaKey || event.altKey) return;
     const step = (event.shiftKey ? LARGE_STEP : STEP) / this.scale;
     const moves = { ArrowLeft: [-1, 0], ArrowRight: [1, 0], ArrowUp: [0, -1], ArrowDown: [0, 1] };
     const move = moves[event.key]?.map((axis) => axis * step);

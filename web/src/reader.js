@@ -27,10 +27,14 @@ export class Reader {
   }
 }
 
-/** Runs one action at a time, and then the latest of those that were asked for meanwhile. */
+/**
+ * Runs one action at a time, and then the latest of those that were asked for meanwhile. An element
+ * is marked as busy until then.
+ */
 export class Latest {
-  constructor(action) {
+  constructor(action, element) {
     this.action = action;
+    this.element = element;
     this.isBusy = false;
     this.next = null;
   }
@@ -41,6 +45,7 @@ export class Latest {
       return;
     }
     this.isBusy = true;
+    this.element.setAttribute("aria-busy", "true");
     try {
       await this.action(...values);
       while (this.next) {
@@ -51,6 +56,7 @@ export class Latest {
     } finally {
       this.isBusy = false;
       this.next = null;
+      this.element.removeAttribute("aria-busy");
     }
   }
 }

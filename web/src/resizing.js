@@ -1,4 +1,4 @@
-/** Resizing as Pillow does it, to the last bit: the network sees what it sees in Python. */
+/** Resizing as Pillow does it, to the last bit, so that the network sees what it sees in Python. */
 
 import { makeBlank, makeRaster } from "./raster.js";
 
@@ -59,7 +59,7 @@ function resample(raster, width, height, rightEnd, lowerEnd) {
 
 /** The pixels that each resized pixel is made of, and their weights. */
 function computeWeights(length, end, size) {
-  const scale = end / size;
+  const scale = Math.fround(end) / size; // Pillow's box is in single precision
   const support = Math.max(1, scale);
   return Array.from({ length: size }, (_, index) => {
     const centre = (index + 0.5) * scale;

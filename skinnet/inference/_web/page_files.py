@@ -14,11 +14,12 @@ _FACE_MODELS = _PACKAGE / "images" / "faces" / "models"
 _PLACES = Path(__file__).parent / "page", _PACKAGE.parent / "web"
 """Where the page is in a wheel, and in a checkout."""
 
-RUNTIME_FILES = "ort.wasm.bundle.min.mjs", "ort-wasm-simd-threaded.wasm"
+RUNTIME_FILES = "ort.wasm.bundle.min.mjs", "ort-wasm-simd-threaded.wasm.gz"
 """Files of ONNX Runtime Web in the page's folder `runtime`."""
 
 _TYPES = {
     ".css": "text/css; charset=utf-8",
+    ".gz": "application/gzip",
     ".html": "text/html; charset=utf-8",
     ".js": "text/javascript; charset=utf-8",
     ".mjs": "text/javascript; charset=utf-8",
@@ -26,7 +27,6 @@ _TYPES = {
     ".png": "image/png",
     ".svg": "image/svg+xml",
     ".txt": "text/plain; charset=utf-8",
-    ".wasm": "application/wasm",
 }
 """MIME types; those of the operating system may be others, which browsers refuse."""
 
