@@ -1,7 +1,11 @@
 """The server: what it sends, to whom, and what it says when it cannot start."""
 
 import http.client
+import signal
 import socket
+import subprocess
+import sys
+import urllib.request
 from collections.abc import Iterator
 from pathlib import Path
 
@@ -107,3 +111,18 @@ def test_a_browser_that_leaves_is_no_error(
         caller.recv(100)
     assert main(["web", "--port", str(server.server_port), "--no-open"]) == 2
     assert "Traceback" not in capfd.readouterr().err
+
+
+@pytest.mark.skipif(sys.platform == "win32", reason="Windows sends no SIGINT to one process")
+def test_the_command_serves_the_page_until_it_is_interrupted(server: PageServer) -> None:
+    command = [sys.executable, "-m", "skinnet", "web", "--port", "0", "--no-open"]
+    with subprocess.Popen(
+        command, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True
+    ) as process:
+        assert process.stdout is not None
+        address = process.stdout.readline().strip()
+        with urllib.request.urlopen(address) as answer:
+            assert b"Your photo never leaves this page." in answer.read()
+        process.send_signal(signal.SIGINT)
+        said = process.communicate(timeout=60)[1]
+    assert process.returncode == 0 and "Traceback" not in said
