@@ -56,11 +56,11 @@ def open_page(server: PageServer, browser: Any) -> Iterator[Callable[..., Any]]:
     faults: list[str] = []
     contexts: list[Any] = []
 
-    def open_one(**options: Any) -> Any:
+    def open_one(path: str = "", **options: Any) -> Any:
         contexts.append(browser.new_context(**options))
         page = contexts[-1].new_page()
         page.on("pageerror", lambda error: faults.append(str(error)))
-        page.goto(server.address)
+        page.goto(server.address + path)
         return page
 
     yield open_one
@@ -71,9 +71,11 @@ def open_page(server: PageServer, browser: Any) -> Iterator[Callable[..., Any]]:
 
 @pytest.fixture(scope="module")
 def sample_page(server: PageServer, browser: Any) -> Iterator[Any]:
-    """The page with the sample read; tests leave it as they found it."""
+    """The page with the sample read, and what it `requested`; tests leave it as they found it."""
     context = browser.new_context(viewport={"width": 1280, "height": 1600})
     page = context.new_page()
+    page.requested = []
+    context.on("request", lambda request: page.requested.append(request.url))
     page.goto(server.address)
     page.click("#sample")
     wait_for_maps(page)

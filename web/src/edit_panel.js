@@ -1,6 +1,6 @@
 /** Sliders of an edit, with undo. */
 
-import { UNCHANGED } from "./editing.js";
+import { UNCHANGED, isUnchanged } from "./editing.js";
 
 const FACTOR = 5; // largest factor of a pigment; the smallest is its inverse
 
@@ -30,14 +30,11 @@ export class EditPanel {
     this.show({ ...UNCHANGED });
   }
 
-  get isChanged() {
-    return Object.entries(UNCHANGED).some(([name, value]) => this.factors[name] !== value);
-  }
-
-  /** Forget all, without a call. */
-  clear() {
-    this.history = [{ ...UNCHANGED }];
-    this.show({ ...UNCHANGED });
+  /** The history of edits of one face; an empty one begins anew. */
+  setHistory(history) {
+    if (!history.length) history.push({ ...UNCHANGED });
+    this.history = history;
+    this.show({ ...history[history.length - 1] });
   }
 
   goBack() {
@@ -93,6 +90,6 @@ export class EditPanel {
 
   enable() {
     this.undo.disabled = this.history.length < 2;
-    this.reset.disabled = !this.isChanged;
+    this.reset.disabled = isUnchanged(this.factors);
   }
 }

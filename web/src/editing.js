@@ -8,7 +8,8 @@ import { LINEAR, toLevel, toLinearFast } from "./srgb.js";
 const RAMP_START = 0.1; // masks between which changes set in
 const RAMP_END = 0.9;
 const RATIO_OFFSET = 1e-3; // linear sRGB added to both colours of a ratio
-const LEAST_SHADING = 0.05; // so that ratios of shading stay finite
+const SHADING_SIGMA = 1.5; // of the Gaussian, in pixels of the network, that averages shading
+const MOST_CONTRAST = 3; // largest ratio of shading to its mean, and of the mean to it
 const LEAST_CHANGE = 1e-6; // in linear sRGB; pixels that change by less keep their exact values
 const STRIP = 64; // rows that are edited at once, which bounds the memory
 const SHINE = 0.1; // specular reflection of which the colour is taken
@@ -18,6 +19,10 @@ const SHINE = 0.1; // specular reflection of which the colour is taken
  * ratio to the mean, so that 0 makes the light even and 2 doubles its contrast.
  */
 export const UNCHANGED = { melanin: 1, hemoglobin: 1, shading: 1, shine: 1 };
+
+export function isUnchanged(factors) {
+  return Object.entries(UNCHANGED).every(([name, value]) => factors[name] === value);
+}
 
 /** Edits one reading: planes [height, width], capture, and weights that fade out at sides. */
 export class Editor {
@@ -83,17 +88,20 @@ export class Editor {
     );
   }
 
-  /** What shading is multiplied by. */
+  /** What shading is multiplied by; at the edge of the skin it is that of the skin nearby. */
   scaleShading(exponent) {
+    const { width, height } = this;
     const { shading, mask } = this.planes;
-    let sum = 0;
-    let total = 0;
-    shading.forEach((value, at) => {
-      sum += mask[at] * value;
-      total += mask[at];
+    const weight = mask.map((value) => value ** 2 + 1e-6);
+    const smooth = (plane) => filterGaussian(plane, width, height, SHADING_SIGMA);
+    const share = smooth(weight);
+    const near = smooth(shading.map((value, at) => value * weight[at]));
+    const sum = (plane) => plane.reduce((total, value) => total + value, 0);
+    const mean = Math.max(sum(near) / sum(share), 1e-3);
+    return near.map((value, at) => {
+      const ratio = clamp(value / share[at] / mean, 1 / MOST_CONTRAST, MOST_CONTRAST);
+      return ratio ** (exponent - 1);
     });
-    const mean = Math.max(sum / Math.max(total, 1e-6), LEAST_SHADING);
-    return shading.map((value) => (Math.max(value, LEAST_SHADING) / mean) ** (exponent - 1));
   }
 
   /**

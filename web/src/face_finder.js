@@ -26,12 +26,15 @@ const FAR = 1.6; // side of a view from afar, for faces that fill the photograph
 /** Parts in a row, their sides, and the side of the smallest face below which they are searched. */
 const PARTS = [[2, 0.6, 0.25], [3, 0.36, 0.1]];
 
-/** Find faces [{box, tilt}], tilt in degrees, from left to right. */
-export async function findFaces(networks, photo) {
+/**
+ * Find faces [{box, tilt}], tilt in degrees, from left to right. A quick search leaves out the parts
+ * of the photograph, in which only smaller faces are found.
+ */
+export async function findFaces(networks, photo, isQuick = false) {
   const found = [];
   await search(networks, photo, frame(photo, 1), LEAST_DETECTION, found);
   if (!found.length) await search(networks, photo, frame(photo, FAR), LEAST_DETECTION, found);
-  await searchParts(networks, photo, found);
+  if (!isQuick) await searchParts(networks, photo, found);
   return found
     .map(({ square }) => ({ box: toBox(square), tilt: (square.tilt * 180) / Math.PI }))
     .sort((a, b) => a.box.left + a.box.right - b.box.left - b.box.right);

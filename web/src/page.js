@@ -20,9 +20,13 @@ const HELP = {
 
 const SHOWN_MAPS = Object.keys(SCALES);
 
+/** Another photograph was opened before the worker answered. */
+class Superseded extends Error {}
+
 class Page {
   constructor() {
     this.reader = new Reader();
+    this.generation = 0;
     this.picture = new PictureView(find("photo"), {
       onPoint: (point, isByKey) => this.setPoint(point, isByKey),
       onPick: (point) => this.pickWhite({ x: point[0], y: point[1] }),
@@ -39,7 +43,7 @@ class Page {
     this.listen();
     this.setTool("probe");
     this.attempt(async () => {
-      await this.reader.call("open");
+      await this.reader.call("open", {});
       if (!this.photo) this.say("Ready: choose a photograph, or try the sample.");
     });
   }
@@ -91,33 +95,51 @@ class Page {
   }
 
   open(blob, name) {
+    this.generation += 1;
     return this.attempt(async () => {
       this.say(`Reading ${name}…`);
-      const photo = await this.reader.call("readPhoto", { blob, name });
-      Object.assign(this, { photo, reading: null, white: null, read: null });
-      this.panel.clear();
+      const photo = await this.call("readPhoto", { blob, name });
+      Object.assign(this, { photo, reading: null, white: null, read: null, faces: [] });
+      this.readByItself = null;
+      find("face-choice").hidden = true;
+      this.zoom(false);
+      this.histories = new Map();
+      this.panel.setHistory([]);
       this.picture.setPhoto(photo);
       find("work").hidden = false;
       find("maps").hidden = true;
       find("clear-white").hidden = true;
       this.say("Looking for faces…");
-      const { faces, largest } = await this.reader.call("findFaces");
-      this.faces = faces;
-      this.listFaces(faces, largest);
-      this.zoom(faces.length > 0);
-      if (!faces.length) {
+      await this.readLargest(true);
+      await this.readLargest(false);
+      if (!this.faces.length) {
         this.chooseTool("box");
         throw new Error(`No face was found in ${name}. Mark one by a square around it.`);
       }
-      await this.readFace(largest);
     });
+  }
+
+  /** Find faces, at a glance first, and read the largest unless it is read already. */
+  async readLargest(isQuick) {
+    const { faces, largest } = await this.call("findFaces", { isQuick });
+    if (isQuick && !faces.length) return;
+    const isRead = this.reading !== null;
+    const isSame = faces.length === this.faces.length;
+    const chosen = isRead ? findSame(faces, this.read[1].face ?? {}) : largest;
+    this.faces = faces;
+    this.listFaces(faces, chosen);
+    const isLeft = this.read === this.readByItself;
+    if (!faces.length || (isRead && isSame) || (isRead && !isLeft)) return;
+    this.zoom(true);
+    await this.readFace(largest);
+    this.readByItself = this.read;
   }
 
   listFaces(faces, largest) {
     this.picture.setFaces(faces, largest);
     const options = faces.map((_, index) => new Option(`${index + 1} of ${faces.length}`, index));
     find("faces").replaceChildren(...options);
-    find("faces").value = largest;
+    if (largest >= 0) find("faces").value = largest;
     find("face-choice").hidden = faces.length < 2;
   }
 
@@ -152,8 +174,14 @@ class Page {
 
   readBy(choose) {
     return this.attempt(async () => {
+      const former = this.read;
       this.read = choose();
-      await this.readAgain();
+      try {
+        await this.readAgain();
+      } catch (error) {
+        this.read = former;
+        throw error;
+      }
     });
   }
 
@@ -161,9 +189,9 @@ class Page {
   async readAgain() {
     this.say("Reading the skin…");
     const [call, options] = this.read;
-    const reading = await this.reader.call(call, { ...options, white: this.white });
+    const reading = await this.call(call, { ...options, white: this.white });
     this.showReading(reading);
-    if (this.panel.isChanged) await this.editing.run(this.panel.factors);
+    await this.editing.run(this.panel.factors);
     this.say(describeReading(this.photo.name, reading, this.white !== null));
   }
 
@@ -173,6 +201,8 @@ class Page {
     this.maps.forEach((map) => map.setReading(reading));
     this.table.setReading(reading);
     this.picture.setReading(reading);
+    if (!this.histories.has(reading.key)) this.histories.set(reading.key, []);
+    this.panel.setHistory(this.histories.get(reading.key));
     find("notes").replaceChildren(
       ...reading.notes.map((note) => {
         const item = document.createElement("li");
@@ -192,8 +222,9 @@ class Page {
 
   async edit(factors) {
     if (!this.reading) return;
-    const head = await this.reader.call("edit", { factors });
-    this.picture.setEdited(this.panel.isChanged ? head : null);
+    const { key } = this.reading;
+    const head = await this.call("edit", { factors });
+    if (key === this.reading.key) this.picture.setEdited(head);
   }
 
   zoom(isZoomed) {
@@ -219,15 +250,23 @@ class Page {
   savePhoto() {
     return this.attempt(async () => {
       if (!this.reading) throw new Error("Nothing is read yet; mark a face first.");
-      const blob = await this.reader.call("writePhoto", { factors: this.panel.factors });
+      const blob = await this.call("writePhoto", { factors: this.panel.factors });
       save(blob, `${removeSuffix(this.photo.name)}_edited.png`);
     });
   }
 
   saveMaps() {
     return this.attempt(async () => {
-      save(await this.reader.call("writeMaps"), `${removeSuffix(this.photo.name)}_maps.zip`);
+      save(await this.call("writeMaps", {}), `${removeSuffix(this.photo.name)}_maps.zip`);
     });
+  }
+
+  /** Call the worker; what it answers is not for a photograph that was opened meanwhile. */
+  async call(name, options) {
+    const { generation } = this;
+    const result = await this.reader.call(name, options);
+    if (generation !== this.generation) throw new Superseded();
+    return result;
   }
 
   say(sentence) {
@@ -240,11 +279,17 @@ class Page {
     try {
       await action();
     } catch (error) {
+      if (error instanceof Superseded) return;
       this.say("");
       find("error").textContent = error.message;
       find("error").hidden = false;
     }
   }
+}
+
+/** The number of a face among others; -1 if it is none of them. */
+function findSame(faces, { box }) {
+  return faces.findIndex((face) => box && face.box.left === box.left && face.box.top === box.top);
 }
 
 function save(blob, name) {

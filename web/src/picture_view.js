@@ -15,7 +15,7 @@ export class PictureView {
   constructor(canvas, calls) {
     Object.assign(this, { canvas, calls, tool: "probe", share: 0.5, isZoomed: false });
     Object.assign(this, { faces: [], chosen: -1, point: null, marked: null, drag: null });
-    Object.assign(this, { view: null, head: null, edited: null });
+    Object.assign(this, { view: null, head: null, edits: new Map() });
     this.context = canvas.getContext("2d", { willReadFrequently: true });
     canvas.addEventListener("pointerdown", (event) => this.press(event));
     canvas.addEventListener("pointermove", (event) => this.move(event));
@@ -27,6 +27,7 @@ export class PictureView {
   /** Show a photograph by its view; coordinates are those of the photograph. */
   setPhoto({ view, size }) {
     Object.assign(this, { size, faces: [], chosen: -1, point: null, marked: null, head: null });
+    this.edits.clear();
     this.view = makeCanvas(view);
     this.draw();
   }
@@ -36,9 +37,10 @@ export class PictureView {
     this.draw();
   }
 
-  /** Show what was read: its rectangle, and its pixels. */
-  setReading({ box, head }) {
-    Object.assign(this, { box, head: makeCanvas(head), edited: null, point: null });
+  /** Show what was read: its rectangle, its pixels, and its key among several. */
+  setReading({ box, head, key }) {
+    Object.assign(this, { box, head: makeCanvas(head), key, point: null });
+    this.edits.delete(key);
     this.draw();
   }
 
@@ -64,9 +66,10 @@ export class PictureView {
     this.draw();
   }
 
-  /** Show edited pixels of the rectangle that was read; null for none. */
+  /** Show the edited pixels of what was read last; null for none. */
   setEdited(head) {
-    this.edited = head && makeCanvas(head);
+    if (head) this.edits.set(this.key, { box: this.box, head: makeCanvas(head) });
+    else this.edits.delete(this.key);
     this.draw();
   }
 
@@ -84,26 +87,31 @@ export class PictureView {
     const wanted = Math.max(LEAST_CANVAS, this.view.width, this.view.height);
     this.scale = wanted / Math.max(width, height);
     resizeCanvas(canvas, Math.round(width * this.scale), Math.round(height * this.scale));
-    this.paint(this.edited ?? this.head);
-    if (this.edited) this.drawDivider();
+    this.paint();
+    if (this.edits.size) this.drawDivider();
     const unit = canvas.width / Math.max(1, canvas.clientWidth || canvas.width);
     this.faces.forEach((face, index) => this.drawFace(face, index, unit));
     if (this.marked) this.drawBox(this.marked, unit, [6, 4]);
     if (this.point) drawCross(this.context, ...this.placeInCanvas(this.point), unit);
   }
 
-  /** Paint the photograph, and the pixels of the rectangle over it. */
-  paint(head) {
+  /** Paint the photograph with the edits of all faces, or without. */
+  paint(isAfter = true) {
     const { context, view, frame, size } = this;
     const ratio = view.width / size[0];
     const [width, height] = [frame.right - frame.left, frame.bottom - frame.top];
     const source = [frame.left, frame.top, width, height].map((value) => value * ratio);
     context.imageSmoothingQuality = "high";
     context.drawImage(view, ...source, 0, 0, this.canvas.width, this.canvas.height);
-    if (!head) return;
-    const [left, top] = this.placeInCanvas([this.box.left, this.box.top]);
-    const [right, bottom] = this.placeInCanvas([this.box.right, this.box.bottom]);
-    context.drawImage(head, left, top, right - left, bottom - top);
+    if (this.head) this.paintHead(this.head, this.box);
+    if (!isAfter) return;
+    for (const { head, box } of this.edits.values()) this.paintHead(head, box);
+  }
+
+  paintHead(head, box) {
+    const [left, top] = this.placeInCanvas([box.left, box.top]);
+    const [right, bottom] = this.placeInCanvas([box.right, box.bottom]);
+    this.context.drawImage(head, left, top, right - left, bottom - top);
   }
 
   drawDivider() {
@@ -114,7 +122,7 @@ export class PictureView {
     context.beginPath();
     context.rect(0, 0, place, canvas.height);
     context.clip();
-    this.paint(this.head);
+    this.paint(false);
     context.restore();
     context.fillStyle = "rgb(255 255 255 / 90%)";
     context.fillRect(place - 1, 0, 2, canvas.height);
@@ -155,7 +163,7 @@ export class PictureView {
   press(event) {
     if (!this.view) return;
     const point = this.locate(event);
-    if (this.edited && this.tool === "probe" && this.isOnDivider(event)) {
+    if (this.edits.size && this.tool === "probe" && this.isOnDivider(event)) {
       this.drag = { kind: "divider" };
     } else if (this.tool === "box") {
       this.drag = { kind: "box", start: point };

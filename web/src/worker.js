@@ -20,8 +20,8 @@ const CALLS = {
     return session.describePhoto();
   },
 
-  findFaces() {
-    return session.findFaces();
+  findFaces({ isQuick }) {
+    return session.findFaces(isQuick);
   },
 
   readFace({ face, white }) {
