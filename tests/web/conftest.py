@@ -35,7 +35,11 @@ def browser() -> Iterator[Any]:
     path = find_chromium()
     if path is None:
         pytest.skip("Chromium is not installed: apt-get install chromium")
-    arguments = ["--host-resolver-rules=MAP * ~NOTFOUND, EXCLUDE 127.0.0.1"]
+    arguments = [
+        "--host-resolver-rules=MAP * ~NOTFOUND, EXCLUDE 127.0.0.1",
+        "--use-fake-device-for-media-stream",
+        "--use-fake-ui-for-media-stream",
+    ]
     if os.name == "posix" and os.geteuid() == 0:
         arguments.append("--no-sandbox")  # which refuses to run as root
     with sync_api.sync_playwright() as playwright:

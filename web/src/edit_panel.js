@@ -1,4 +1,4 @@
-/** Sliders of an edit, with undo. */
+/** Sliders of an edit and its paint, with undo. */
 
 import { UNCHANGED, isUnchanged } from "./editing.js";
 
@@ -50,6 +50,14 @@ export class EditPanel {
     this.onChange(this.factors);
   }
 
+  /** Change where the edit is; `isDone` at the end of a stroke. */
+  setPaint(paint, isDone) {
+    this.factors = { ...this.factors, paint };
+    if (isDone) this.history.push({ ...this.factors });
+    this.enable();
+    this.onChange(this.factors);
+  }
+
   build(name, { label, read, range }) {
     const row = document.createElement("label");
     row.className = "slider";
@@ -90,6 +98,6 @@ export class EditPanel {
 
   enable() {
     this.undo.disabled = this.history.length < 2;
-    this.reset.disabled = isUnchanged(this.factors);
+    this.reset.disabled = isUnchanged(this.factors) && !this.factors.paint;
   }
 }

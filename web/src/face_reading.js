@@ -54,9 +54,20 @@ export class FaceReading {
     return { planes: copies, width, height, box: crop.box, head, notes, means };
   }
 
+  /** Set the edit; its paint, if there is one, says where it is. */
+  setFactors(factors) {
+    const { paint } = factors;
+    if (paint?.id !== this.factors.paint?.id) {
+      const { fade } = this;
+      this.editor.fade = paint ? fade.map((value, at) => value * paint.values[at]) : fade;
+      this.known.clear();
+    }
+    this.factors = factors;
+  }
+
   /** Edit the view of the head; what is not edited is transparent. Null without an edit. */
   async editView(factors) {
-    this.factors = factors;
+    this.setFactors(factors);
     if (isUnchanged(factors)) return null;
     const head = { ...this.head, data: this.head.data.slice() };
     this.editor.apply(head, this.headMask, await this.editor.computeChange(factors), this.known);

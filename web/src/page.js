@@ -1,5 +1,7 @@
 /** The page: opens a photograph, shows what is read of it, and edits it. */
 
+import { paintLine } from "./brush.js";
+import { Camera } from "./camera.js";
 import { SCALES } from "./colour_scales.js";
 import { EditPanel } from "./edit_panel.js";
 import { MapView } from "./map_view.js";
@@ -14,6 +16,8 @@ const HELP = {
     "Shift in larger steps.",
   white: "Click on something white or grey that is lit as the face is, such as paper or a wall. " +
     "With the keyboard: arrow keys, then Enter.",
+  paint: "Paint where the edit is to be; without paint it is all over the skin. With the keyboard: " +
+    "arrow keys, then Enter.",
   box: "Draw a square around a face, from the brows to the chin. With the keyboard: arrow keys " +
     "move it, plus and minus resize it, Enter reads it.",
 };
@@ -32,6 +36,7 @@ class Page {
       onPick: (point) => this.pickWhite({ x: point[0], y: point[1] }),
       onMark: (box) => this.readBox(box),
       onDivide: (share) => this.divide(share),
+      onPaint: (from, to, isDone) => this.paint(from, to, isDone),
     });
     this.maps = SHOWN_MAPS.map((name) => new MapView(name, (point) => this.setPoint(point, false)));
     find("map-grid").append(...this.maps.map((map) => map.element));
@@ -53,8 +58,11 @@ class Page {
       if (target.files[0]) this.open(target.files[0], target.files[0].name);
       target.value = "";
     });
+    const camera = new Camera(find("camera"), (blob) => this.open(blob, "camera.png"));
+    find("use-camera").addEventListener("click", () => this.attempt(() => camera.open()));
     find("sample").addEventListener("click", () => this.openSample());
     find("faces").addEventListener("change", ({ target }) => this.readFace(Number(target.value)));
+    find("brush").addEventListener("input", () => this.showPaint());
     find("clear-white").addEventListener("click", () => this.pickWhite(null));
     find("divider").addEventListener("input", ({ target }) =>
       this.picture.setShare(target.value / 100),
@@ -220,8 +228,26 @@ class Page {
     if (isByKey) this.say(describeValues(readValues(this.reading, point)));
   }
 
+  paint(from, to, isDone) {
+    if (!this.reading) return;
+    const { paint } = this.panel.factors;
+    this.panel.setPaint(paintLine(paint, this.reading, from, to, this.radius), isDone);
+  }
+
+  /** Radius of the brush in pixels of the photograph. */
+  get radius() {
+    const { left, right } = this.reading.box;
+    return (find("brush").value / 200) * (right - left);
+  }
+
+  showPaint() {
+    if (!this.reading) return;
+    this.picture.setPaint(this.radius, this.panel.factors.paint?.values, this.reading.width);
+  }
+
   async edit(factors) {
     if (!this.reading) return;
+    this.showPaint();
     const { key } = this.reading;
     const head = await this.call("edit", { factors });
     if (key === this.reading.key) this.picture.setEdited(head);
@@ -239,6 +265,8 @@ class Page {
 
   setTool(tool) {
     this.picture.setTool(tool);
+    find("brush-size").hidden = tool !== "paint";
+    this.showPaint();
     find("tool-help").textContent = HELP[tool];
   }
 

@@ -39,7 +39,7 @@ export class PhotoSession {
     const key = makeKey(face);
     const others = this.faces.filter((other) => makeKey(other) !== key);
     const reading = await FaceReading.read(this.networks, this.photo, face, others, white);
-    reading.factors = this.readings.get(key)?.factors ?? reading.factors;
+    reading.setFactors(this.readings.get(key)?.factors ?? reading.factors);
     this.readings.set(key, reading);
     this.reading = reading;
     return { ...reading.describe(), key };
@@ -51,7 +51,7 @@ export class PhotoSession {
 
   /** The whole photograph, with the edits of all faces, as a PNG file. */
   async writePhoto(factors) {
-    this.reading.factors = factors;
+    this.reading.setFactors(factors);
     const { data, width, height } = this.photo;
     const canvas = new OffscreenCanvas(width, height);
     const context = canvas.getContext("2d", { willReadFrequently: true });

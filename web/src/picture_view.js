@@ -10,7 +10,10 @@ const LEAST_CANVAS = 640; // longer side of the canvas, in pixels
 
 const LEAST_BOX = 24; // side of a face that is marked, in pixels of the photograph
 
-/** Calls `onPoint(point, isByKey)`, `onPick(point)`, `onMark(box)` and `onDivide(share)`. */
+/**
+ * Calls `onPoint(point, isByKey)`, `onPick(point)`, `onMark(box)`, `onDivide(share)`, and
+ * `onPaint(from, to, isDone)`.
+ */
 export class PictureView {
   constructor(canvas, calls) {
     Object.assign(this, { canvas, calls, tool: "probe", share: 0.5, isZoomed: false });
@@ -47,12 +50,18 @@ export class PictureView {
   setTool(tool) {
     this.tool = tool;
     this.marked = null;
-    this.canvas.classList.toggle("marking", tool === "box");
+    this.canvas.classList.toggle("marking", tool === "box" || tool === "paint");
     this.draw();
   }
 
   setZoom(isZoomed) {
     this.isZoomed = isZoomed;
+    this.draw();
+  }
+
+  /** Show the brush by its radius, and what is painted by values of the reading's size. */
+  setPaint(radius, values, width) {
+    Object.assign(this, { radius, painted: values && makePaintCanvas(values, width) });
     this.draw();
   }
 
@@ -75,7 +84,7 @@ export class PictureView {
 
   /** The part of the photograph that is shown; white and faces are looked for in all of it. */
   get frame() {
-    if (this.isZoomed && this.head && this.tool === "probe") return this.box;
+    if (this.isZoomed && this.head && ["probe", "paint"].includes(this.tool)) return this.box;
     return { left: 0, top: 0, right: this.size[0], bottom: this.size[1] };
   }
 
@@ -92,6 +101,7 @@ export class PictureView {
     const unit = canvas.width / Math.max(1, canvas.clientWidth || canvas.width);
     this.faces.forEach((face, index) => this.drawFace(face, index, unit));
     if (this.marked) this.drawBox(this.marked, unit, [6, 4]);
+    if (this.tool === "paint" && this.head) this.drawBrush(unit);
     if (this.point) drawCross(this.context, ...this.placeInCanvas(this.point), unit);
   }
 
@@ -126,6 +136,20 @@ export class PictureView {
     context.restore();
     context.fillStyle = "rgb(255 255 255 / 90%)";
     context.fillRect(place - 1, 0, 2, canvas.height);
+  }
+
+  /** The brush, and what is painted while no edit shows it. */
+  drawBrush(unit) {
+    if (this.painted && !this.edits.has(this.key)) this.paintHead(this.painted, this.box);
+    if (!this.point) return;
+    const [x, y] = this.placeInCanvas(this.point);
+    for (const [colour, line] of [["rgb(0 0 0 / 60%)", 3.5], ["white", 1.5]]) {
+      this.context.strokeStyle = colour;
+      this.context.lineWidth = line * unit;
+      this.context.beginPath();
+      this.context.arc(x, y, this.radius * this.scale, 0, 2 * Math.PI);
+      this.context.stroke();
+    }
   }
 
   placeInCanvas([x, y]) {
@@ -167,6 +191,10 @@ export class PictureView {
       this.drag = { kind: "divider" };
     } else if (this.tool === "box") {
       this.drag = { kind: "box", start: point };
+    } else if (this.tool === "paint") {
+      this.drag = { kind: "paint", last: point };
+      this.calls.onPoint(point, false);
+      this.calls.onPaint(point, point, false);
     } else {
       this.drag = { kind: "point" };
       this.calls.onPoint(point, false);
@@ -182,6 +210,10 @@ export class PictureView {
     } else if (this.drag?.kind === "box") {
       this.marked = makeSquare(this.drag.start, point, this.size);
       this.draw();
+    } else if (this.drag?.kind === "paint") {
+      this.calls.onPoint(point, false);
+      this.calls.onPaint(this.drag.last, point, false);
+      this.drag.last = point;
     } else if (this.drag || event.pointerType === "mouse") {
       this.calls.onPoint(point, false);
     }
@@ -191,6 +223,7 @@ export class PictureView {
     const { drag } = this;
     this.drag = null;
     if (drag?.kind === "box") this.finishBox();
+    if (drag?.kind === "paint") this.calls.onPaint(drag.last, this.locate(event), true);
     if (drag?.kind === "point" && this.tool === "white") this.calls.onPick(this.locate(event));
   }
 
@@ -220,7 +253,10 @@ export class PictureView {
       this.resizeBox(0, 0, event.key === "-" ? -LARGE_STEP : LARGE_STEP);
     } else if (event.key === "Enter" && isBox) this.finishBox();
     else if (event.key === "Enter" && this.tool === "white") this.calls.onPick(this.shiftPoint([0, 0]));
-    else if (event.key === "Escape") this.cancel();
+    else if (event.key === "Enter" && this.tool === "paint") {
+      const point = this.shiftPoint([0, 0]);
+      this.calls.onPaint(point, point, true);
+    } else if (event.key === "Escape") this.cancel();
     else return;
     event.preventDefault();
   }
@@ -285,6 +321,13 @@ function makeCanvas({ data, width, height }) {
   const canvas = new OffscreenCanvas(width, height);
   canvas.getContext("2d").putImageData(new ImageData(data, width, height), 0, 0);
   return canvas;
+}
+
+/** Paint in a colour that skin does not have. */
+function makePaintCanvas(values, width) {
+  const data = new Uint8ClampedArray(4 * values.length);
+  values.forEach((value, at) => data.set([40, 120, 255, 140 * value], 4 * at));
+  return makeCanvas({ data, width, height: values.length / width });
 }
 
 /** The square from one corner to the other, within the photograph's sides; null if it is small. */
