@@ -14,7 +14,7 @@ MOST_BLIND = 0.3
 are within 0.15."""
 
 
-def is_apart(own: Sequence[float], other: Sequence[float], most: float) -> bool:
+def is_apart(own: Sequence[float], other: Sequence[float] | NDArray[Any], most: float) -> bool:
     """Whether log R/G or log B/G of two white balances differ by more than the largest."""
     return bool(np.abs(np.subtract(own, other)).max() > most)
 
