@@ -2,6 +2,7 @@
 
 import errno
 import shutil
+import sys
 from http import HTTPStatus
 from http.server import BaseHTTPRequestHandler, ThreadingHTTPServer
 from typing import Any
@@ -43,6 +44,8 @@ class PageServer(ThreadingHTTPServer):
     """
 
     daemon_threads = True
+    # On Windows it would let two servers have one port.
+    allow_reuse_address = sys.platform != "win32"
 
     def __init__(self, port: int) -> None:
         if not 0 <= port <= _LARGEST_PORT:
