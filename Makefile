@@ -3,21 +3,21 @@ PYTHON ?= $(or $(shell command -v python3.11),python3)
 BIN := .venv/bin
 READY := .venv/.ready
 
-.PHONY: demo test coverage test-fast test-lowest lint format bench docs wheel clean
+.PHONY: demo test coverage test-fast test-lowest lint format bench docs runtime wheel clean
 
 demo: $(READY)
 	$(BIN)/python -m train fit --config configs/quick.yaml
 	$(BIN)/python -m export runs/quick/best.ckpt -o runs/quick/skin.onnx
 	$(BIN)/python -m examples.astronaut
 
-test: $(READY)
+test: $(READY) runtime
 	$(BIN)/python -m pytest -n 2
 
 # The lines that no test runs; tracing takes twice the time of the tests.
-coverage: $(READY)
+coverage: $(READY) runtime
 	$(BIN)/python -m pytest -n 2 --cov --cov-report=term:skip-covered
 
-test-fast: $(READY)
+test-fast: $(READY) runtime
 	$(BIN)/python -m pytest -n 2 -m "not slow"
 
 # In an environment of its own, with the lowest versions that pyproject.toml allows.
@@ -60,7 +60,11 @@ bench: $(READY)
 docs: $(READY)
 	NO_MKDOCS_2_WARNING=1 PYTHONPATH=. $(BIN)/python -m mkdocs build --strict --quiet
 
-wheel: $(READY)
+# What the web page needs from npm; without npm a sentence says so, and the page is left out.
+runtime: $(READY)
+	@$(BIN)/python -m tools.web_runtime || true
+
+wheel: $(READY) runtime
 	$(BIN)/python -m build --wheel
 
 clean:

@@ -46,6 +46,7 @@ def main(argv: Sequence[str] | None = None) -> int:
     _add_person(verbs)
     _add_compare(verbs)
     _add_capture_verb(verbs)
+    _add_web(verbs)
     for verb, help_ in PIPELINE.items():
         verbs.add_parser(verb, help=help_, add_help=False)
     arguments = list(sys.argv[1:] if argv is None else argv)
@@ -205,6 +206,22 @@ def _add_compare(verbs: "argparse._SubParsersAction[argparse.ArgumentParser]") -
     verb.set_defaults(run=_compare)
 
 
+def _add_web(verbs: "argparse._SubParsersAction[argparse.ArgumentParser]") -> None:
+    verb = verbs.add_parser(
+        "web",
+        help="open a page that reads and edits photographs in the browser",
+        description="Serve a page that reads and edits photographs in the browser, on this "
+        "computer alone: no photograph leaves the page. Ctrl-C ends it.",
+    )
+    verb.add_argument(
+        "--port", type=int, default=8765, metavar="N", help="8765 by default; 0 for any free one"
+    )
+    verb.add_argument(
+        "--no-open", dest="open", action="store_false", help="do not open the browser"
+    )
+    verb.set_defaults(run=_web)
+
+
 def _add_json(verb: argparse.ArgumentParser, what: str = "the summary") -> None:
     verb.add_argument(
         "--json", action="store_true", help=f"print {what} as one line of JSON, nothing else"
@@ -310,4 +327,11 @@ def _compare(options: argparse.Namespace) -> int:
     from skinnet.inference._compare_verb import compare
 
     compare(options)
+    return _OK
+
+
+def _web(options: argparse.Namespace) -> int:
+    from skinnet.inference._web.web_verb import web
+
+    web(options)
     return _OK

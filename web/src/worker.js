@@ -1,0 +1,60 @@
+/** The worker: reads photographs while the page stays alive. Calls are answered one by one. */
+
+import { openNetworks } from "./networks.js";
+import { PhotoSession, makeFace } from "./photo_session.js";
+import { readPicture } from "./picture_file.js";
+
+const opening = openNetworks(new URL("..", self.location.href));
+opening.catch(() => {}); // the first call reports it
+
+let session = null;
+
+const CALLS = {
+  async open() {
+    await opening;
+  },
+
+  async readPhoto({ blob, name }) {
+    const photo = await readPicture(blob, name);
+    session = new PhotoSession(await opening, photo, name);
+    return session.describePhoto();
+  },
+
+  findFaces({ isQuick }) {
+    return session.findFaces(isQuick);
+  },
+
+  readFace({ face, white }) {
+    return session.read(face, white);
+  },
+
+  readBox({ box, white }) {
+    return session.read(makeFace(box), white);
+  },
+
+  edit({ factors }) {
+    return session.editView(factors);
+  },
+
+  writePhoto({ factors }) {
+    return session.writePhoto(factors);
+  },
+
+  writeMaps() {
+    return session.writeMaps();
+  },
+};
+
+let queue = Promise.resolve();
+
+self.onmessage = ({ data: { id, name, options } }) => {
+  queue = queue.then(() => answer(id, name, options));
+};
+
+async function answer(id, name, options) {
+  try {
+    self.postMessage({ id, result: await CALLS[name](options ?? {}) });
+  } catch (error) {
+    self.postMessage({ id, error: error.message });
+  }
+}
