@@ -51,7 +51,7 @@ def compare(one: Decomposition, other: Decomposition) -> tuple[float, float]:
 def test_the_astronaut_is_read_at_every_tilt(decomposer: Decomposer, degrees: int) -> None:
     photo = np.ascontiguousarray(astronaut()[:256, 96:352])
     upright, turned = (decomposer(each, detail=False) for each in (photo, turn(photo, degrees)))
-    assert np.abs(compare(upright, turned)).max() < 0.08
+    assert np.abs(compare(upright, turned)).max() < 0.1
     mask, melanin = (
         turn_back(getattr(turned, name), degrees, photo.shape) for name in ("mask", "melanin")
     )
@@ -86,7 +86,7 @@ def test_portraits_are_read_at_every_tilt(decomposer: Decomposer, degrees: int) 
             photo = resize(photo, 675, 675)
         upright, turned = (decomposer(each, detail=False) for each in (photo, turn(photo, degrees)))
         differences.append(np.abs(compare(upright, turned)))
-    assert np.median(differences, 0).max() < 0.05
+    assert np.median(differences, 0).max() < 0.07
 
 
 @pytest.mark.parametrize("left", [190, 205, 220])
