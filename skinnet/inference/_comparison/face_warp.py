@@ -57,7 +57,7 @@ class FaceWarp(NamedTuple):
         if self.bend > _MOST_BENT:
             raise InputError(
                 f"The poses of the face in {names[0]} and {names[1]} differ too much to compare "
-                f"them: the mesh of one fits the other within {self.bend:.0%} of the face's "
+                f"them: the mesh of one fits the other within {self.bend:.1%} of the face's "
                 f"length, and {_MOST_BENT:.0%} is the most. Photograph the face from the same side."
             )
 

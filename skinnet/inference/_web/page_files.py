@@ -59,7 +59,7 @@ def list_files() -> dict[str, PageFile]:
     if missing:
         raise InputError(
             f"The page lacks ONNX Runtime Web ({', '.join(missing)}). In a checkout, "
-            "`python -m tools.web_runtime` fetches it, which needs npm; or install a skinnet wheel "
+            "`make runtime` fetches it, which needs npm; or install a skinnet wheel "
             "that was built with it."
         )
     paths = {"/": page / "index.html", **own, **_list_models(), **_list_samples()}
