@@ -14,6 +14,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from benchmarks.pictures import choose_known
 from benchmarks.portraits import PIGMENTS
 from benchmarks.repeated_faces import (
     RepeatedFaces,
@@ -24,6 +25,7 @@ from benchmarks.repeated_faces import (
 )
 from benchmarks.report import Results, main
 from benchmarks.scene_chart import read_scene_chart
+from benchmarks.synthetic_constancy import measure_interval_coverage
 from skinnet.errors import InputError
 from skinnet.inference import Decomposer, compare_photographs
 from skinnet.inference.capture_profile import CaptureProfile
@@ -158,7 +160,7 @@ def _compare(decomposer: Decomposer, pair: Pair, key: str) -> Found | None:
 
 def _tell(shot: Shot, known: tuple[str, ...]) -> Capture:
     """The parts of a capture that are known."""
-    return Capture(**{name: getattr(shot.known, name)[0] for name in known})
+    return choose_known(shot.known, known).map(lambda value: value[0])
 
 
 def _read(found: Comparison) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
@@ -177,7 +179,7 @@ def score(changed: list[Found | None], same: list[Found | None]) -> Results:
         results[name] = {
             "r": float(np.corrcoef(truth[:, index], change[:, index])[0, 1]),
             "rmse": float(np.sqrt(np.mean(error**2))),
-            "coverage": float(np.mean(np.abs(error) < 1.645 * sd[:, index])),
+            "coverage": measure_interval_coverage(error, sd[:, index]),
         }
     results["unchanged"] = float(np.mean([one.unchanged for one in still]))
     results["noticed"] = float(np.mean([not one.unchanged for one in found]))

@@ -32,6 +32,7 @@ import torch
 from numpy.typing import NDArray
 
 from benchmarks import changes
+from benchmarks.pictures import choose_known
 from benchmarks.portraits import PIGMENTS
 from benchmarks.reader import NetworkReader
 from benchmarks.repeated_faces import RepeatedFaces, fix_exposure, split_shots
@@ -136,15 +137,15 @@ def climb(data: SyntheticFaces, scene: SceneParameters, number: int) -> Rung:
     assert batch.known is not None
     (shot, raw), known = split_shots(batch), batch.known
     first, second = (known.map(lambda value, row=row: value[row : row + 1]) for row in (0, 1))
-    card = Seen(shot.photograph, _choose(first, _CARD))
+    card = Seen(shot.photograph, choose_known(first, _CARD))
     profile = read_scene_chart(COLLATE["mild"]([plain]), data.decoder.camera, SPLIT, number)
     steps = {
         "nothing": Seen(shot.photograph, None),
         "white": card,
         "chart": card if profile is None else _apply(profile, shot.photograph),
-        "light": Seen(shot.photograph, _choose(first, _LIT)),
-        "light_and_camera": Seen(shot.photograph, _choose(first, _NAMED)),
-        "raw": Seen(raw.photograph, _choose(second, _RAW)),
+        "light": Seen(shot.photograph, choose_known(first, _LIT)),
+        "light_and_camera": Seen(shot.photograph, choose_known(first, _NAMED)),
+        "raw": Seen(raw.photograph, choose_known(second, _RAW)),
     }
     return Rung(shot.truth, steps, profile is None)
 
@@ -170,10 +171,6 @@ def _make_raw(scene: SceneParameters) -> SceneParameters:
             processing=make_no_processing(),
         )
     )
-
-
-def _choose(known: Capture, names: tuple[str, ...]) -> Capture:
-    return Capture(**{name: getattr(known, name) for name in names})
 
 
 def _apply(profile: CaptureProfile, photograph: NDArray[np.uint8]) -> Seen:

@@ -1,5 +1,6 @@
 """Synthetic faces with the truth of their skin, pixel by pixel."""
 
+from collections.abc import Sequence
 from typing import NamedTuple
 
 import numpy as np
@@ -87,6 +88,11 @@ def find_known(batch: Batch) -> Capture:
     """Find what a careful user knows of each capture: balance, light, camera, linear or not."""
     assert batch.capture is not None
     return batch.capture._replace(exposure=None)
+
+
+def choose_known(known: Capture, names: Sequence[str]) -> Capture:
+    """Choose the parts of captures that are told; the others are None."""
+    return Capture(**{name: getattr(known, name) for name in names})
 
 
 def select_skin(values: Tensor, skin: Tensor) -> Tensor:

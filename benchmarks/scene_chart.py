@@ -14,12 +14,8 @@ from skinnet.inference._references.patch_samples import _CLIPPED, PatchSamples
 from skinnet.inference._references.tone_curve import ToneCurve
 from skinnet.inference.capture_profile import CaptureProfile
 from skinnet.physics import SpectralCamera
-from train.synthetic.photography.processing import add_flare, grade
-from train.synthetic.photography.simulated_camera import apply_tone_curve, simulate_sensor
-from train.synthetic.scene import CameraParameters, SceneParameters
-
-_BRIGHTEST = 0.85
-"""Largest linear value of a white diffuser beside a chart that is not overexposed."""
+from train.synthetic.photography.simulated_camera import BRIGHTEST, process, simulate_sensor
+from train.synthetic.scene import SceneParameters
 
 _NOISE, _SPREAD = 0.003, 0.01
 """Standard deviation of the error of a patch's mean colour in display sRGB, and the relative spread
@@ -46,11 +42,12 @@ def read_scene_chart(
     """
     camera = scene.camera
     matrix, _ = simulate_sensor(scene.light, camera, model, split)
-    white = camera.exposure * camera.known.light_error.exp() * matrix[0].sum(0).max()
-    gain = white.clamp_max(_BRIGHTEST) / white
+    light = camera.exposure * camera.known.light_error.exp()
+    white = light * matrix[0].sum(0).max()
+    gain = white.clamp_max(BRIGHTEST) / white
     patches = torch.from_numpy(load_patches()).to(matrix) @ matrix[0]
-    linear = (gain * camera.exposure * camera.known.light_error.exp() * patches).clamp_min(0)
-    samples = _sample(_process(camera, linear.mT[None, :, None])[0, :, 0].mT, seed)
+    linear = (gain * light * patches).clamp_min(0)
+    samples = _sample(process(camera, linear.mT[None, :, None])[0, :, 0].mT, seed)
     try:
         reading = read_samples(samples, load_chart("classic"), "The chart")
     except InputError:
@@ -66,13 +63,6 @@ def _make_profile(reading: ChartReading, same_exposure: bool) -> CaptureProfile:
     if reading.tone == ToneCurve():
         return CaptureProfile(told)
     return CaptureProfile(told, straight, reading.tone)
-
-
-def _process(
-    camera: CameraParameters, linear: Float[Tensor, "1 3 1 patches"]
-) -> Float[Tensor, "1 3 1 patches"]:
-    lit = add_flare(camera.processing, linear)
-    return grade(camera.processing, apply_tone_curve(camera.tone, lit))
 
 
 def _sample(display: Float[Tensor, "patches 3"], seed: int) -> PatchSamples:

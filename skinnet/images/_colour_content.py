@@ -98,8 +98,7 @@ def check_colour(photo: NDArray[np.uint8], box: Box, face: Box | None, name: str
     """Raise `InputError` for a picture without colour, as `find_tone` finds it."""
     tone = find_tone(photo, box, face)
     if tone is not None:
-        height, width = photo.shape[:2]
-        region = box if face is None else frame_head(face, width, height, _FACE_MARGIN)
+        region = box if face is None else _frame_face(photo, face)
         is_dark = np.percentile(_average(photo[region.slices]).luma, 75) < _DARK
         raise InputError(
             f"There is no colour in {name}: {tone}. Melanin and hemoglobin cannot be read from it; "
@@ -128,12 +127,17 @@ def find_tone(photo: NDArray[np.uint8], box: Box, face: Box | None) -> str | Non
     skin = _find_skin(photo, face)
     if np.hypot(*skin) < _GREY:
         return "the skin in it is grey"
-    height, width = photo.shape[:2]
-    alone = _average(photo[frame_head(face, width, height, _FACE_MARGIN).slices])
+    alone = _average(photo[_frame_face(photo, face).slices])
     tone = _fit_tone(alone, skin, _FACE, _FACE_LIMIT)
     if tone is None and box.width * box.height > _CLOSE_UP * face.width * face.height:
         tone = _fit_tone(head, skin, _HEAD, _HEAD_LIMIT)
     return tone
+
+
+def _frame_face(photo: NDArray[np.uint8], face: Box) -> Box:
+    """The face with a margin, inside the photograph."""
+    height, width = photo.shape[:2]
+    return frame_head(face, width, height, _FACE_MARGIN)
 
 
 def find_tone_of_texture(texture: NDArray[np.uint8]) -> str | None:

@@ -5,6 +5,7 @@ from pathlib import Path
 from typing import NamedTuple
 
 from skinnet.errors import InputError
+from skinnet.inference._onnx_pair import get_decoder_path
 from skinnet.inference.onnx_model import SHIPPED_ENCODER
 
 _PACKAGE = Path(__file__).parents[2]
@@ -74,8 +75,8 @@ def _find_page() -> Path:
 
 
 def _list_models() -> dict[str, Path]:
-    encoder = SHIPPED_ENCODER
-    models = [encoder, encoder.with_suffix(".decoder.onnx"), *_FACE_MODELS.glob("*.onnx")]
+    shipped = SHIPPED_ENCODER, get_decoder_path(SHIPPED_ENCODER)
+    models = [*shipped, *_FACE_MODELS.glob("*.onnx")]
     return {f"/models/{path.name}": path for path in models}
 
 

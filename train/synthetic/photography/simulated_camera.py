@@ -22,7 +22,7 @@ HELD_OUT = 10
 _USUAL_MIRED = torch.tensor(180.0)
 """Light of 5,556 K, whose white is mistaken."""
 
-_BRIGHTEST = 0.85
+BRIGHTEST = 0.85
 """Linear value of the brightest reference before the tone curve."""
 
 _PIVOT = 0.18
@@ -117,7 +117,7 @@ def take_photograph(camera: CameraParameters, linear: Image) -> Image:
     sigma = (camera.blur * linear.shape[-1] / 192)[:, None].expand(-1, 2)
     processing = camera.processing
     sharp = gaussian_blur2d(linear.clamp_min(0), 7, sigma)
-    display = grade(processing, apply_tone_curve(camera.tone, add_flare(processing, sharp)))
+    display = process(camera, sharp)
     white, dark = (expand_scalar(part) for part in camera.noise.unbind(1))
     spread = white + dark * (1 - display)
     noisy = (display + spread * camera.grain).clamp(0, 1)
@@ -141,12 +141,25 @@ def photograph_white(
         reflectance.
     """
     bright = white.amax(-1) * camera.known.light_error.exp()
-    reflectance = camera.known.reflectance.minimum(_BRIGHTEST / bright)
+    reflectance = camera.known.reflectance.minimum(BRIGHTEST / bright)
     share = expand_scalar(reflectance * camera.known.light_error.exp())
-    linear = add_flare(camera.processing, (share * white[..., None, None]).clamp_min(1e-3))
-    display = grade(camera.processing, apply_tone_curve(camera.tone, linear))
+    display = process(camera, (share * white[..., None, None]).clamp_min(1e-3))
     seen: Tensor = rgb_to_linear_rgb(display)[..., 0, 0]
     return seen / reflectance[:, None]
+
+
+def process(camera: CameraParameters, linear: Image) -> Image:
+    """Turn light on the sensor into display sRGB: stray light, tone curve, grading; no noise.
+
+    Args:
+        camera: What each picture's camera does.
+        linear: Linear sRGB, 0 or more.
+
+    Returns:
+        Display sRGB in [0, 1].
+    """
+    lit = add_flare(camera.processing, linear)
+    return grade(camera.processing, apply_tone_curve(camera.tone, lit))
 
 
 def apply_tone_curve(tone: Float[Tensor, "batch 2"], linear: Image) -> Image:
