@@ -5,7 +5,7 @@ import sys
 from collections.abc import Sequence
 from pathlib import Path
 
-from skinnet.errors import InputError
+from skinnet.errors import InputError, _explain_missing
 
 
 def main(arguments: Sequence[str] | None = None) -> int:
@@ -33,7 +33,8 @@ def main(arguments: Sequence[str] | None = None) -> int:
     try:
         _export(options.checkpoint, options.output, options.half)
     except ModuleNotFoundError as error:
-        print(f'export needs {error.name}: pip install -e ".[export]"', file=sys.stderr)
+        sentence = _explain_missing(error, "export", "python -m export", '-e ".[export]"')
+        print(f"export: {sentence}", file=sys.stderr)
         return 2
     except (InputError, OSError) as error:
         print(f"export: {error}", file=sys.stderr)

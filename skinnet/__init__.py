@@ -5,10 +5,9 @@ from typing import Any
 import lazy_loader
 
 from skinnet._version import __version__ as __version__
+from skinnet.errors import _TORCH
 
 _import_public, _, __all__ = lazy_loader.attach_stub(__name__, __file__)
-
-_TORCH_EXTRA = frozenset({"torch", "jaxtyping", "kornia", "safetensors"})
 
 
 def __getattr__(name: str) -> Any:
@@ -16,7 +15,7 @@ def __getattr__(name: str) -> Any:
     try:
         return _import_public(name)
     except ModuleNotFoundError as error:
-        if (error.name or "").partition(".")[0] not in _TORCH_EXTRA:
+        if (error.name or "").partition(".")[0] not in _TORCH:
             raise
         raise ImportError(
             f'skinnet.{name} needs the torch extra: pip install "skinnet[torch]"', name=error.name

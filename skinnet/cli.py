@@ -7,7 +7,7 @@ from collections.abc import Sequence
 from pathlib import Path
 
 from skinnet._version import __version__
-from skinnet.errors import InputError
+from skinnet.errors import InputError, _explain_missing
 from skinnet.inference._messages import report
 
 PIPELINE = {
@@ -73,11 +73,7 @@ def _run_pipeline(verb: str, arguments: list[str]) -> int:
 
         return run_verb(verb, arguments, PIPELINE[verb])
     except ModuleNotFoundError as error:
-        if (error.name or "").partition(".")[0] == "skinnet":
-            raise
-        raise InputError(
-            f'skinnet {verb} needs the scans extra: pip install "skinnet[scans]"'
-        ) from error
+        raise _explain_missing(error, "scans", f"skinnet {verb}") from error
 
 
 def _add_predict(verbs: "argparse._SubParsersAction[argparse.ArgumentParser]") -> None:

@@ -14,3 +14,51 @@ class InputError(ValueError):
 
 class NoFaceError(InputError):
     """No face was found in a photograph."""
+
+
+def _check_count(name: str, value: int, least: int = 0) -> None:
+    """Raise `InputError` unless a setting is a whole number that is not too small."""
+    if not value >= least:
+        raise InputError(f"{name} is a whole number from {least}; got {value}.")
+
+
+_TORCH = frozenset({"torch", "jaxtyping", "kornia", "safetensors"})
+_SCANS = _TORCH | {"embreex", "h5py", "jsonargparse", "matplotlib", "scipy", "trimesh"}
+_EXTRAS = {
+    "chart": frozenset({"colour", "colour_checker_detection", "cv2"}),
+    "heif": frozenset({"pillow_heif"}),
+    "raw": frozenset({"rawpy"}),
+    "torch": _TORCH,
+    "scans": _SCANS,
+    "train": _SCANS | {"lightning", "rich", "tensorboard", "torchmetrics"},
+    "export": _TORCH | {"onnx", "onnxscript"},
+}
+"""Top modules that each extra brings, by the names that Python imports."""
+
+
+def _explain_missing(error: ImportError, extra: str, what: str, install: str = "") -> InputError:
+    """Make the error for a module that is not installed.
+
+    The extra is named only if it brings the module: another missing module would still be missing
+    after its installation.
+
+    Args:
+        error: The error of the import.
+        extra: The extra that the command needs.
+        what: What needs the module, as the subject of a sentence.
+        install: What pip installs for the extra.
+
+    Raises:
+        ImportError: `error` itself if it is skinnet that is incomplete.
+    """
+    module = (error.name or "").partition(".")[0]
+    if module in ("skinnet", "train", "export"):
+        raise error
+    if module in _EXTRAS[extra]:
+        command = install or f'"skinnet[{extra}]"'
+        return InputError(f"{what} needs the {extra} extra: pip install {command}")
+    missing = f"the Python module {module}" if module else "a library that does not load"
+    return InputError(
+        f"{what} needs {missing} ({error}), which the {extra} extra does not bring; install the "
+        "package that has it."
+    )

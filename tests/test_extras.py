@@ -1,9 +1,15 @@
 """Commands that need an extra say how to install it."""
 
+import re
 import subprocess
 import sys
+import tomllib
+from importlib.metadata import packages_distributions
+from pathlib import Path
 
 import pytest
+
+from skinnet.errors import _EXTRAS, _explain_missing
 
 ABSENT_SCAN = "from skinnet.cli import main\nsys.exit(main(['maps', 'absent.obj']))\n"
 
@@ -59,3 +65,32 @@ def test_a_verb_needs_no_embree() -> None:
     done = run_without("embreex", ABSENT_SCAN)
     assert done.returncode == 2
     assert "absent.obj" in done.stderr and "pip install" not in done.stderr
+
+
+@pytest.mark.parametrize("missing", ["charset_normalizer", "networkx.algorithms"])
+def test_a_module_that_no_extra_brings_is_named_itself(missing: str) -> None:
+    """To install the extra again would not help."""
+    error = ModuleNotFoundError(f"No module named {missing!r}", name=missing)
+    sentence = str(_explain_missing(error, "scans", "skinnet maps"))
+    assert missing.partition(".")[0] in sentence and "pip install" not in sentence
+
+
+def test_a_part_of_skinnet_that_is_missing_is_no_missing_extra() -> None:
+    with pytest.raises(ModuleNotFoundError):
+        _explain_missing(ModuleNotFoundError(name="skinnet.pipeline"), "scans", "skinnet maps")
+
+
+@pytest.mark.parametrize("extra", sorted(_EXTRAS))
+def test_the_modules_of_an_extra_are_those_of_its_packages(extra: str) -> None:
+    settings = tomllib.loads(Path("pyproject.toml").read_text(encoding="utf-8"))
+    extras = settings["project"]["optional-dependencies"]
+
+    def list_packages(name: str) -> set[str]:
+        found = {re.match(r"[\w-]+", each)[0] for each in extras[name]}
+        inner = set().union(*(re.findall(r"skinnet\[(.*)\]", each) for each in extras[name]))
+        return (found - {"skinnet"}).union(*(list_packages(each) for each in inner))
+
+    brought = {each.lower().replace("_", "-") for each in list_packages(extra)}
+    owners = packages_distributions()
+    for module in _EXTRAS[extra] - {"cv2"}:  # of a package of the detector of charts
+        assert brought & {each.lower().replace("_", "-") for each in owners.get(module, [])}

@@ -12,7 +12,10 @@ def run() -> int:
     try:
         from train.cli import main
     except ModuleNotFoundError as error:
-        print(f'train needs {error.name}: pip install -e ".[train]"', file=sys.stderr)
+        from skinnet.errors import _explain_missing
+
+        sentence = _explain_missing(error, "train", "python -m train", '-e ".[train]"')
+        print(f"train: {sentence}", file=sys.stderr)
         return 2
     return main()
 

@@ -15,7 +15,8 @@ from skinnet._version import __version__
 from skinnet.appearance._principal import PrincipalComponents
 from skinnet.appearance.colour import SkinColour
 from skinnet.errors import InputError
-from skinnet.files import _describe_content, _explain_format, write_atomically
+from skinnet.files import write_atomically
+from skinnet.files._content import describe_content, explain_format
 
 MODEL_FORMAT = 1
 """Version of the layout of these files."""
@@ -117,7 +118,7 @@ def read_arrays(
 
 def make_damage_error(path: Path) -> InputError:
     """Make the error for a file that is damaged or of another kind."""
-    content = _describe_content(path) if path.is_file() else None
+    content = describe_content(path) if path.is_file() else None
     what = "damaged, cut short, or another kind"
     if content is not None and content[0] != "an .npz archive of arrays":
         what = "; ".join(filter(None, (f"it is {content[0]}", content[1])))
@@ -129,7 +130,7 @@ def _check_header(path: Path, kind: str, header: dict[str, Any]) -> None:
         raise InputError(
             f"{path} has format {header['format']}, and this skinnet reads format {MODEL_FORMAT}; "
             "make it again with this version, or use the one that wrote it "
-            f"({_explain_format(header['format'], MODEL_FORMAT, header.get('skinnet'))})."
+            f"({explain_format(header['format'], MODEL_FORMAT, header.get('skinnet'))})."
         )
     if header["kind"] != kind:
         raise InputError(f"{path} is a {header['kind']}, and a {kind} is needed.")

@@ -12,7 +12,7 @@ from jaxtyping import Bool, Float, Float32
 from scipy.linalg import eigh
 
 from skinnet.appearance._feature_blocks import ArrayBlocks, FeatureBlocks
-from skinnet.errors import InputError
+from skinnet.errors import InputError, _check_count
 
 MAX_COMPONENTS = 100
 """Largest number of components that are kept if no number is given."""
@@ -87,6 +87,8 @@ def sample_normal(
     count: int, components: int, seed: int
 ) -> Float[np.ndarray, "samples components"]:
     """Sample standard normal numbers; a row does not depend on the number of rows."""
+    _check_count("count", count)
+    _check_count("seed", seed)
     return np.random.default_rng(seed).standard_normal((count, components))
 
 

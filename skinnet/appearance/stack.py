@@ -15,7 +15,7 @@ from skinnet.appearance._feature_blocks import compute_block_width
 from skinnet.appearance.colour import CHANNELS, SkinColour
 from skinnet.appearance.skin_texture import SkinTexture
 from skinnet.errors import InputError
-from skinnet.files import _explain_format
+from skinnet.files._content import explain_format
 
 _FEATURES, _MASKS, _STATE = "features.npy", "masks.npy", "stack.json"
 
@@ -228,7 +228,7 @@ def _read_state(folder: Path) -> dict[str, Any]:
         raise InputError(
             f"{folder} holds a stack of format {found}, and this skinnet reads format "
             f"{_STACK_FORMAT}; make it again in another folder, or use the version that wrote it "
-            f"({_explain_format(found, _STACK_FORMAT, state.get('skinnet'))})."
+            f"({explain_format(found, _STACK_FORMAT, state.get('skinnet'))})."
         )
     return state
 

@@ -9,7 +9,7 @@ from scipy.spatial import cKDTree
 
 from skinnet.calibration._checks import check_data, check_model, root_mean_square
 from skinnet.calibration._distance import GamutDistance, Match
-from skinnet.errors import InputError
+from skinnet.errors import InputError, _check_count
 
 _MAX_COLOURS, _START_COLOURS = 20_000, 3_000
 """Recorded colours of the last fit, and of those from each start; more cost time and gain little
@@ -153,6 +153,7 @@ def calibrate(
         [0.8, 0.8, 0.8]
     """
     grid, data = check_model(model), check_data(data)
+    _check_count("seed", seed)
     colours = np.random.default_rng(seed).permutation(data)[:_MAX_COLOURS]
     transform, level, others = _choose_start(grid, colours[:_START_COLOURS])
     distance = GamutDistance(colours, grid, level)

@@ -16,6 +16,7 @@ from PIL import Image, PngImagePlugin
 
 from skinnet._version import __version__
 from skinnet.files import READ_ERRORS
+from skinnet.files._reading import read_file
 from skinnet.images._chunks import SIGNATURE
 from skinnet.images._decode import PHOTO_FORMATS
 from skinnet.images._kind import is_heif
@@ -108,7 +109,7 @@ def read_summary(path: Path) -> dict[str, Any] | None:
     try:
         if not path.is_file() or path.stat().st_size > _LARGEST_SUMMARY:
             return None
-        summary = json.loads(path.read_bytes())
+        summary = json.loads(read_file(path))
     except READ_ERRORS:
         return None
     if not isinstance(summary, dict):

@@ -9,6 +9,7 @@ from pathlib import Path
 from typing import Any
 
 from skinnet.errors import InputError
+from skinnet.files._reading import open_file
 
 OUTPUT = "skinmaps"
 """Folder beside a photograph or a scan for its results."""
@@ -66,7 +67,7 @@ def compute_digest(path: Path) -> str:
         InputError: The file cannot be read.
     """
     try:
-        with path.open("rb") as file:
+        with open_file(path) as file:
             return hashlib.file_digest(file, "sha256").hexdigest()
     except OSError as error:
         raise InputError(f"{path} cannot be read ({error.strerror}); check the path.") from error

@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 from PIL import Image
 
 from skinnet.errors import InputError
+from skinnet.files._reading import read_file, read_stream
 from skinnet.images import _decode
 from skinnet.images.picture import Picture
 from skinnet.images.srgb import to_uint8
@@ -62,7 +63,7 @@ def read_picture(
     if not hasattr(source, "read"):
         kind = type(source).__name__
         raise InputError(f"An image is a path, a Pillow image or an array; got {kind}.")
-    return _decode.decode_file(BytesIO(source.read()), name or "The data")
+    return _decode.decode_file(BytesIO(read_stream(source, name or "The data")), name or "The data")
 
 
 def read_photo(
@@ -104,8 +105,7 @@ def _from_path(path: Path, name: str) -> Picture:
     if path.is_dir():
         raise InputError(f"{path} is a folder; give a photograph in it.")
     try:
-        with path.open("rb") as file:
-            return _decode.decode_file(file, name)
+        return _decode.decode_file(BytesIO(read_file(path)), name)
     except FileNotFoundError:
         raise InputError(f"There is no file {path}; check the path.") from None
     except (OSError, ValueError) as error:

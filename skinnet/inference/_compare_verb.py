@@ -7,6 +7,7 @@ from typing import Any
 
 from skinnet.errors import InputError
 from skinnet.files import READ_ERRORS, write_text, write_together
+from skinnet.files._reading import MOST_TEXT, read_file
 from skinnet.images._mark import Mark, read_mark
 from skinnet.images._png_file import write_png
 from skinnet.images._result_names import OUTPUT, choose_stem, lock_folder
@@ -86,7 +87,7 @@ def _belongs(file: Path, digests: list[str]) -> bool:
         mark = read_mark(file)
         return mark is not None and mark.part == _PART and mark.digest == digests[0]
     try:
-        inputs = json.loads(file.read_bytes())["inputs"]
+        inputs = json.loads(read_file(file, MOST_TEXT))["inputs"]
         return [each["sha256"] for each in inputs] == digests
     except (*READ_ERRORS, KeyError, TypeError):
         return False

@@ -9,6 +9,8 @@ from io import BufferedIOBase, BytesIO
 from pathlib import Path
 from typing import NamedTuple
 
+from skinnet.files._reading import open_file
+
 _INTEGER, _FIXED64, _BYTES, _FIXED32 = 0, 1, 2, 5
 _FIELDS = {1: _INTEGER, 5: _INTEGER, **dict.fromkeys((2, 3, 4, 6, 7, 8, 14, 20, 25, 26), _BYTES)}
 """Wire types of the fields of `ModelProto`; another field is that of another kind of file."""
@@ -58,7 +60,7 @@ def read_header(path: Path) -> Header | None:
         The header; None if the file is not in ONNX format.
     """
     fields = []
-    with path.open("rb") as file:
+    with open_file(path) as file:
         for field in _read_fields(file, path.stat().st_size):
             if _FIELDS.get(field.number) != field.wire:
                 return None

@@ -7,7 +7,7 @@ import onnxruntime
 from onnxruntime.capi import onnxruntime_pybind11_state as ort_errors
 
 from skinnet.errors import InputError
-from skinnet.files import _describe_content
+from skinnet.files._content import describe_content
 from skinnet.inference._onnx_header import Header, read_header
 
 REMEDY = "give a file made by `python -m export`, or leave --model out"
@@ -52,7 +52,7 @@ def identify(path: Path, kind: str) -> Header:
         raise InputError(f"There is no {kind} file {path}; {remedy}.")
     try:
         header = read_header(path)
-        content = None if header else _describe_content(path)
+        content = None if header else describe_content(path)
     except OSError as error:
         raise InputError(f"{path} cannot be read ({error.strerror}); check the path.") from error
     if header is None:

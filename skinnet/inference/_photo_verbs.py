@@ -13,6 +13,7 @@ from typing import Any
 import numpy as np
 
 from skinnet.errors import InputError, NoFaceError
+from skinnet.files._reading import read_stream
 from skinnet.images._mark import EDITED, Mark, read_mark
 from skinnet.images._result_names import OUTPUT, compute_digest, lock_folder
 from skinnet.images._walk import STDIN, Found, Walk, check_mark, find_one, walk
@@ -227,7 +228,10 @@ def _read(found: Found) -> tuple[Source, Picture, tuple[str, ...]]:
         path = Path(found.path)
         picture = read_picture(path, found.path)
         return Source(found.path, path, compute_digest(path)), picture, found.notes
-    name, data = _name(found), b"" if sys.stdin is None else sys.stdin.buffer.read()
+    name, data = (
+        _name(found),
+        b"" if sys.stdin is None else read_stream(sys.stdin.buffer, _name(found)),
+    )
     notes = check_mark(read_mark(BytesIO(data)), name)
     picture = read_picture(BytesIO(data), name)
     return Source(name, None, hashlib.sha256(data).hexdigest()), picture, notes

@@ -11,7 +11,7 @@ import onnxruntime
 from numpy.typing import NDArray
 
 from skinnet.errors import InputError
-from skinnet.files import _explain_format
+from skinnet.files._content import explain_format
 from skinnet.inference._onnx_header import Header
 from skinnet.inference._onnx_session import (
     REMEDY,
@@ -156,7 +156,7 @@ def _check_metadata(path: Path, kind: str, header: Header) -> None:
             f"{REMEDY}."
         )
     if found != ONNX_FORMAT:
-        advice = _explain_format(found, int(ONNX_FORMAT), metadata.get("skinnet.version"))
+        advice = explain_format(found, int(ONNX_FORMAT), metadata.get("skinnet.version"))
         raise InputError(
             f"{path} has format {found}, and this skinnet reads format {ONNX_FORMAT}; export it "
             f"again with this version, or use the one that wrote it ({advice})."

@@ -6,7 +6,7 @@ from collections.abc import Iterator
 from pathlib import Path
 from typing import NamedTuple
 
-from skinnet.mesh._named_file import find_named_file
+from skinnet.mesh._named_file import find_named_file, is_inside
 
 _ENCODINGS = ("utf-8", "cp1252", "latin-1", "gb18030", "shift_jis", "cp1251", "cp850")
 _ROOT = re.compile(r"^(?:file:)?/*(?:[a-zA-Z]:)?/*")
@@ -19,8 +19,12 @@ class FoundFile(NamedTuple):
     moved: bool
 
 
-def find_foreign_file(name: bytes, folders: list[Path]) -> FoundFile | None:
+def find_foreign_file(
+    name: bytes, folders: list[Path], root: Path | None = None
+) -> FoundFile | None:
     """Find the file of a name, in the first of some folders in which it is.
+
+    Nothing outside of `root` is opened, by default each folder itself.
 
     The name may be quoted, percent-encoded, in any usual encoding, with back-slashes, or in another
     case than the file's. If it has folders that are not there, as the path of another machine has,
@@ -29,17 +33,25 @@ def find_foreign_file(name: bytes, folders: list[Path]) -> FoundFile | None:
     spellings = list(dict.fromkeys(_spell(name)))
     for spelling in spellings:
         for folder in folders:
-            found = find_named_file(folder, spelling)
+            found = find_named_file(folder, spelling, root)
             if found is not None:
                 return FoundFile(found, False)
     for spelling in spellings:
         parts = [part for part in _ROOT.sub("", spelling.replace("\\", "/")).split("/") if part]
         for start in range(len(parts)):
             for folder in folders:
-                found = find_named_file(folder, "/".join(parts[start:]))
+                found = find_named_file(folder, "/".join(parts[start:]), root)
                 if found is not None:
                     return FoundFile(found, True)
     return None
+
+
+def describe_absence(name: bytes, folder: Path) -> str:
+    """Say why no file of a name was found for a mesh or material in a folder."""
+    path = show_name(name).strip("\"' ").removeprefix("file://").replace("\\", "/")
+    if is_inside(folder, folder, path):
+        return "there is no such file"
+    return "files outside of the mesh's folder are not opened by their names"
 
 
 def show_name(name: bytes) -> str:

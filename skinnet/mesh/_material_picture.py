@@ -4,7 +4,7 @@ from dataclasses import replace
 from pathlib import Path
 
 from skinnet.errors import InputError
-from skinnet.mesh._foreign_name import find_foreign_file, show_name
+from skinnet.mesh._foreign_name import describe_absence, find_foreign_file, show_name
 from skinnet.mesh._materials import Material, PictureStatement, Placement
 from skinnet.mesh._texture_file import Texture, check_colour, describe_texture, open_texture
 
@@ -60,8 +60,8 @@ class PictureReader:
     def find(self, statement: PictureStatement, placement: Placement) -> Path:
         """Find a picture, beside the MTL file or the mesh."""
         folders = [statement.library.absolute().parent, self.folder]
-        whole = find_foreign_file(statement.rest, folders[:1])
-        found = whole or find_foreign_file(placement.name, folders)
+        whole = find_foreign_file(statement.rest, folders[:1], self.folder)
+        found = whole or find_foreign_file(placement.name, folders, self.folder)
         if found is None:
             raise _refuse_missing(statement, placement)
         if found.moved:
@@ -117,6 +117,7 @@ def _refuse_missing(statement: PictureStatement, placement: Placement) -> InputE
     alike = [each for each in alike if each.rpartition(".")[2].lower() not in ("obj", "mtl")]
     hint = f" ({alike[0]} is there)" if alike else ""
     return InputError(
-        f"{statement.describe()} names the picture {name!r}, and there is no such file{hint}; put "
-        "it beside the mesh, or give the picture with --texture."
+        f"{statement.describe()} names the picture {name!r}, and "
+        f"{describe_absence(placement.name, folder)}{hint}; put it beside the mesh, or give "
+        "the picture with --texture."
     )

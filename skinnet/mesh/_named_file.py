@@ -1,17 +1,20 @@
 """Files that other files name: percent-encoded, with back-slashes, or in another case."""
 
+import os
 import unicodedata
 from pathlib import Path
 from urllib.parse import unquote
 
 
-def find_named_file(folder: Path, name: str) -> Path | None:
+def find_named_file(folder: Path, name: str, root: Path | None = None) -> Path | None:
     """Find the file that a mesh or material in `folder` names, or None.
 
     The name is tried as it is written, then percent-decoded and with back-slashes as separators.
     Where no file has exactly this name, the only one that differs in case or in Unicode
-    normalisation is taken.
+    normalisation is taken. A mesh may come from anybody: paths that lead out of `root`, by default
+    `folder`, are not followed.
     """
+    root = root or folder
     plain = name.split("?")[0].split("#")[0]
     spellings = [name, unquote(name), plain, unquote(plain)]
     paths = dict.fromkeys(
@@ -21,10 +24,17 @@ def find_named_file(folder: Path, name: str) -> Path | None:
     )
     for find in (_find_exactly, _find_in_any_case):
         for path in paths:
-            found = find(folder, path)
+            found = find(folder, path) if is_inside(root, folder, path) else None
             if found is not None:
                 return found
     return None
+
+
+def is_inside(root: Path, folder: Path, path: str) -> bool:
+    """Whether a path that is written in a file of `folder` stays below `root`."""
+    top = os.path.abspath(root)
+    whole = os.path.abspath(os.path.join(folder, path)) if "\0" not in path else ""
+    return whole.startswith(os.path.join(top, ""))
 
 
 def _find_exactly(folder: Path, path: str) -> Path | None:

@@ -135,7 +135,7 @@ def _read_placement(material: Material | None) -> Placement | None:
 def _describe_faults(path: Path, library: Library) -> list[str]:
     remedy = "put the MTL file beside the mesh, or give the picture with --texture"
     faults = [
-        f"{path} names the materials' file {missing}, and there is no such file; what it says of "
+        f"{path} names the materials' file {missing}; what it says of "
         f"textures is not known: {remedy}."
         for missing in library.missing
     ]

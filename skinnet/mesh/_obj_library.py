@@ -6,7 +6,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from skinnet.mesh._foreign_name import find_foreign_file, show_name
+from skinnet.mesh._foreign_name import describe_absence, find_foreign_file, show_name
 from skinnet.mesh._materials import Material, read_materials
 from skinnet.mesh._named_file import find_named_file
 from skinnet.mesh._obj import ObjFile, Statement
@@ -47,7 +47,10 @@ def read_library(path: Path, file: ObjFile) -> Library:
         found, absent = _find_libraries(statement.rest, folder)
         for library in found:
             known = read_materials(library) | known
-        missing += [f"{show_name(name)} (line {statement.line + 1})" for name in absent]
+        missing += [
+            f"{show_name(name)} (line {statement.line + 1}), and {describe_absence(name, folder)}"
+            for name in absent
+        ]
     numbers = [int(each) for each in np.unique(file.material)]
     named = [file.materials[each] for each in numbers if each >= 0]
     if (missing or not file.libraries) and any(_is_undefined(each, known) for each in named):

@@ -10,6 +10,7 @@ from jaxtyping import Bool, Float, Int, UInt8
 
 from skinnet.errors import InputError
 from skinnet.files import READ_ERRORS
+from skinnet.files._reading import read_file
 
 _SPACE, _SLASH = 32, ord("/")
 _ENCODINGS = {b"\xff\xfe": "utf-16", b"\xfe\xff": "utf-16", b"\xef\xbb\xbf": "utf-8-sig"}
@@ -60,10 +61,12 @@ def read_lines(path: Path) -> Lines:
         InputError: If the file cannot be read, or is no text.
     """
     try:
-        content = path.read_bytes()
+        content = read_file(path)
         for mark, encoding in _ENCODINGS.items():
             if content.startswith(mark):
                 content = content.decode(encoding).encode()
+    except InputError:
+        raise
     except READ_ERRORS as error:
         raise InputError(f"{path} cannot be read ({error}); copy it again.") from error
     if b"\0" in content:

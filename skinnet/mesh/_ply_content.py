@@ -7,8 +7,9 @@ import numpy as np
 from jaxtyping import Float, Int
 
 from skinnet.errors import InputError
+from skinnet.files._reading import read_file
 from skinnet.mesh._face_parts import Faces, make_bare_parts, make_part
-from skinnet.mesh._foreign_name import find_foreign_file, show_name
+from skinnet.mesh._foreign_name import describe_absence, find_foreign_file, show_name
 from skinnet.mesh._mesh_parts import MeshContent, MeshPart, check_range, refuse_points
 from skinnet.mesh._ply_elements import Column, Columns, read_elements
 from skinnet.mesh._ply_header import refuse_ply, split_ply
@@ -61,7 +62,7 @@ def read_ply_content(
 
 
 def _read(path: Path) -> _Ply:
-    header, body = split_ply(path, path.read_bytes())
+    header, body = split_ply(path, read_file(path))
     columns = read_elements(path, header, body)
     vertex, face = columns.get("vertex", {}), columns.get("face", {})
     if not all(axis in vertex for axis in "xyz"):
@@ -156,8 +157,9 @@ def _read_numbered(path: Path, ply: _Ply, number: int, notes: list[str]) -> Text
     found = find_foreign_file(name, [path.absolute().parent])
     if found is None:
         raise InputError(
-            f"{path} names the picture {show_name(name)!r} (TextureFile), and there is no such "
-            "file; put it beside the mesh, or give the picture with --texture."
+            f"{path} names the picture {show_name(name)!r} (TextureFile), and "
+            f"{describe_absence(name, path.parent)}; put it beside the mesh, or give "
+            "the picture with --texture."
         )
     if found.moved:
         notes.append(

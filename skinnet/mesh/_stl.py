@@ -7,6 +7,7 @@ import numpy as np
 from jaxtyping import Float
 
 from skinnet.errors import InputError
+from skinnet.files._reading import read_file
 from skinnet.mesh._face_parts import GREY
 from skinnet.mesh._mesh_parts import MeshContent, MeshGeometry, MeshPart, refuse_points
 from skinnet.mesh._obj_lines import convert
@@ -29,7 +30,7 @@ def read_stl_content(
     Raises:
         InputError: For a file that is damaged, cut short, or has no triangles.
     """
-    content = path.read_bytes()
+    content = read_file(path)
     stated = int.from_bytes(content[80:_HEAD], "little")
     # Binary files may begin with `solid` too.
     if len(content) == _HEAD + stated * _FACET.itemsize and len(content) > _HEAD:

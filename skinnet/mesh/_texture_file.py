@@ -10,6 +10,7 @@ from PIL import Image
 
 from skinnet.errors import InputError
 from skinnet.files import READ_ERRORS
+from skinnet.files._reading import read_file
 from skinnet.images._decode import decode_file, decode_image
 from skinnet.images.picture import Picture
 
@@ -31,7 +32,7 @@ def open_texture(path: Path) -> Picture:
         InputError: If the picture is missing, damaged, or larger than `MAX_PIXELS`.
     """
     try:
-        data = path.read_bytes()
+        data = read_file(path)
     except FileNotFoundError:
         raise InputError(f"There is no texture {path}; check the path.") from None
     except OSError as error:

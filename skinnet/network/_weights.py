@@ -12,7 +12,8 @@ from torch import Tensor
 
 from skinnet._version import __version__
 from skinnet.errors import InputError
-from skinnet.files import _describe_content, _explain_format, write_atomically
+from skinnet.files import write_atomically
+from skinnet.files._content import describe_content, explain_format
 from skinnet.network._earlier_weights import EARLIER_FORMAT
 
 WEIGHTS_FORMAT = 4
@@ -63,7 +64,7 @@ def read_weights(path: Path) -> SavedModel:
             metadata = file.metadata() or {}
             state = {name: file.get_tensor(name) for name in file.keys()}
     except SafetensorError as error:
-        what = describe_content(path, ".safetensors")
+        what = describe_other_content(path, ".safetensors")
         raise InputError(f"{path} is not a complete safetensors file{what} ({error}).") from error
     if metadata.get("skinnet.kind") != KIND:
         raise InputError(f"{path} does not hold weights of skinnet; another program wrote it.")
@@ -94,13 +95,13 @@ def make_format_error(path: str | Path, found: object, version: object) -> Input
     return InputError(
         f"{path} has format {found}, this skinnet reads {WEIGHTS_FORMAT}; train it again with this "
         "version, or use the one that wrote it "
-        f"({_explain_format(found, WEIGHTS_FORMAT, version)})."
+        f"({explain_format(found, WEIGHTS_FORMAT, version)})."
     )
 
 
-def describe_content(path: Path, suffix: str) -> str:
+def describe_other_content(path: Path, suffix: str) -> str:
     """Say in brackets what a file is instead of weights with that suffix; nothing if unknown."""
-    content = _describe_content(path) if path.is_file() else None
+    content = describe_content(path) if path.is_file() else None
     if content is None or content[0] == _CONTENTS[suffix]:
         return ""
     what, remedy = content

@@ -12,7 +12,7 @@ from skinnet.errors import InputError
 from skinnet.network._weights import (
     WEIGHTS_FORMAT,
     SavedModel,
-    describe_content,
+    describe_other_content,
     make_format_error,
     refuse_mismatch,
 )
@@ -63,7 +63,7 @@ def _explain_unreadable(path: Path, error: Exception) -> str:
             "run code; another program or a newer version of it wrote the file. Give a checkpoint "
             "that skinnet's training wrote, such as RUN/best.ckpt."
         )
-    what = describe_content(path, ".ckpt")
+    what = describe_other_content(path, ".ckpt")
     return (
         f"{path} is not a complete checkpoint{what}; give one that training wrote, such as "
         "RUN/best.ckpt."

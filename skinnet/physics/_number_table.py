@@ -10,6 +10,7 @@ import numpy as np
 from jaxtyping import Float
 
 from skinnet.errors import InputError
+from skinnet.files._reading import MOST_TEXT, read_file
 
 _NUMBER = re.compile(r"[+-]?(?:\d+(?:[.,]\d*)?|[.,]\d+)(?:[eE][+-]?\d+)?")
 _THOUSANDS = re.compile(r"[+-]?[1-9]\d{0,2},\d{3}")
@@ -118,7 +119,9 @@ def _check_decimals(path: Path, columns: list[list[str]]) -> None:
 
 def _read_text(path: Path, needed: str) -> str:
     try:
-        data = path.read_bytes()
+        data = read_file(path, MOST_TEXT)
+    except InputError:
+        raise
     except (OSError, ValueError) as error:
         raise InputError(f"{path} cannot be read as a text file; check the path.") from error
     kind = next((name for start, name in _FOREIGN if start.match(data)), None)

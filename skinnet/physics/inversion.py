@@ -254,7 +254,7 @@ def _is_on_manifold(
     return on_manifold
 
 
-def _check_axis(name: str, low: float, high: float, nodes: int) -> None:
+def _check_axis(name: str, low: float, high: float, nodes: int = 2) -> None:
     if not 0 <= low < high <= 1:
         raise InputError(
             f"The range of {name} is two volume fractions in [0, 1], the lower first; got "

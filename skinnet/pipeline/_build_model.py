@@ -14,7 +14,7 @@ from skinnet.appearance.joint_measures import measure_joint
 from skinnet.appearance.linear import LinearModel
 from skinnet.appearance.measures import Measures, measure
 from skinnet.appearance.stack import SubjectStack
-from skinnet.errors import InputError
+from skinnet.errors import InputError, _check_count
 from skinnet.images._result_names import OUTPUT
 from skinnet.pipeline._model_inputs import find_maps, read_mask, read_shape, stack_subjects
 from skinnet.pipeline._model_results import (
@@ -53,6 +53,14 @@ class ModelSettings:
     effect: bool = False
     samples: int = 100
     seed: int = 0
+
+    def __post_init__(self) -> None:
+        if self.components is not None:
+            _check_count("components", self.components, 1)
+        _check_count("samples", self.samples, 1)
+        _check_count("seed", self.seed)
+        if not 0 < self.share <= 1:
+            raise InputError(f"share is a share of the subjects in (0, 1]; got {self.share}.")
 
 
 def add_arguments(parser: ArgumentParser) -> None:

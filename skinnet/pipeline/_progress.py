@@ -9,6 +9,7 @@ from pathlib import Path
 from typing import Any
 
 from skinnet.files import write_text
+from skinnet.files._reading import read_file
 
 
 def log(text: str) -> None:
@@ -35,7 +36,7 @@ def read_finished(record: Path, fingerprint: str, files: list[Path]) -> dict[str
     if not all(file.is_file() for file in [record, *files]):
         return None
     try:
-        found = json.loads(record.read_text(encoding="utf-8"))
+        found = json.loads(read_file(record))
     except ValueError:
         return None
     return found if isinstance(found, dict) and found.get("inputs") == fingerprint else None

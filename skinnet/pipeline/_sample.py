@@ -9,7 +9,7 @@ from jsonargparse import ArgumentParser, Namespace
 from skinnet.appearance.hybrid import HybridModel
 from skinnet.appearance.maps_file import save_maps
 from skinnet.appearance.skin_texture import SkinTexture
-from skinnet.errors import InputError
+from skinnet.errors import InputError, _check_count
 from skinnet.images._png_file import write_png
 from skinnet.inference._tiles import draw_grid, draw_picture
 from skinnet.pipeline._build_model import MODEL_FOLDER
@@ -40,6 +40,7 @@ def run(config: Namespace) -> int:
     """Write sample_NN_maps.npz and sample_NN_albedo.png of each face, and samples.png of all."""
     if config.count < 1:
         raise InputError(f"count is 1 or more faces; got {config.count}.")
+    _check_count("seed", config.seed)
     if not 0 <= config.spread <= 10:
         raise InputError(f"spread is a number of deviations in [0, 10]; got {config.spread}.")
     model = HybridModel.load(config.model)

@@ -1,12 +1,35 @@
 """The parser of the commands that take settings from YAML and flags."""
 
 import re
-from collections.abc import Mapping
-from typing import NoReturn
+import sys
+from collections.abc import Iterator, Mapping, Sequence
+from io import StringIO
+from pathlib import Path
+from typing import Any, NoReturn
 
-from jsonargparse import ArgumentParser
+import yaml
+from jsonargparse import ArgumentParser, get_loader, set_dumper, set_loader
 
 from skinnet.errors import InputError
+from skinnet.files._reading import read_stream
+from skinnet.files._settings import MOST_SETTINGS, check_yaml, parse_settings, read_settings
+
+_MODE = "bounded yaml"
+_SETTINGS = (".yaml", ".yml", ".json")
+
+
+def _load(text: str) -> Any:
+    check_yaml(text)
+    return get_loader("yaml")(text)
+
+
+def _dump(data: Any) -> str:
+    text: str = yaml.safe_dump(data, default_flow_style=False, allow_unicode=True, sort_keys=False)
+    return text
+
+
+set_loader(_MODE, _load, (yaml.YAMLError,))
+set_dumper(_MODE, _dump)
 
 
 class SentenceParser(ArgumentParser):
@@ -32,6 +55,29 @@ class SentenceParser(ArgumentParser):
     help_command: str | None = None
     renamed: Mapping[str, str] = {}
 
+    def __init__(self, *args: Any, **kwargs: Any) -> None:
+        super().__init__(*args, **{"parser_mode": _MODE} | kwargs)
+
+    def parse_args(self, args: Sequence[str] | None = None, *more: Any, **kwargs: Any) -> Any:
+        """Parse arguments, whose files of settings are checked first.
+
+        Args:
+            args: The arguments; those of the process by default.
+            *more: As jsonargparse takes them.
+            **kwargs: As jsonargparse takes them.
+
+        Raises:
+            InputError: For an argument or a file that cannot be used.
+        """
+        for path in _list_settings(sys.argv[1:] if args is None else args):
+            _check_stream() if path == "-" else read_settings(path)
+        try:
+            return super().parse_args(args, *more, **kwargs)
+        except UnicodeDecodeError as error:
+            raise InputError(
+                f"A file that the settings name is not text in UTF-8 ({error}); save it as UTF-8."
+            ) from error
+
     def error(self, message: str, ex: Exception | None = None) -> NoReturn:
         """Raise `InputError` with the message on one line.
 
@@ -49,3 +95,33 @@ class SentenceParser(ArgumentParser):
         sentence = " ".join(message.split())
         help_command = self.help_command or f"{self.prog} --help"
         raise InputError(f"{sentence} ({help_command} lists the options)") from ex
+
+
+def _list_settings(arguments: Sequence[str]) -> Iterator[str]:
+    """List the arguments that are files of settings: after --config, or by their ending."""
+    before = ""
+    for argument in arguments:
+        option, equals, value = argument.partition("=")
+        path = value if equals and option.startswith("-") else argument
+        given = (option if equals else before) == "--config"
+        if given and path == "-":
+            yield path
+        elif (given or path.lower().endswith(_SETTINGS)) and _exists(path):
+            yield path
+        before = argument
+
+
+def _check_stream() -> None:
+    """Read settings from standard input, which jsonargparse would read without an end."""
+    if isinstance(sys.stdin, StringIO) or sys.stdin is None:
+        return
+    data = read_stream(sys.stdin.buffer, "standard input", MOST_SETTINGS)
+    parse_settings(data, "standard input")
+    sys.stdin = StringIO(data.decode("utf-8-sig"))
+
+
+def _exists(path: str) -> bool:
+    try:
+        return Path(path).exists() and not Path(path).is_dir()
+    except (OSError, ValueError):
+        return False

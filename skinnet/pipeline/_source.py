@@ -12,6 +12,7 @@ import numpy as np
 
 from skinnet.errors import InputError
 from skinnet.files import READ_ERRORS
+from skinnet.files._reading import MOST_TEXT, open_file, read_file
 from skinnet.images._mark import Mark, parse_mark, read_mark
 from skinnet.images._result_names import compute_digest, describe_input, is_input
 
@@ -161,7 +162,7 @@ def _read_record(path: Path) -> dict[str, Any]:
     try:
         text: str | bytes
         if path.suffix.lower() == ".json":
-            text = path.read_bytes()
+            text = read_file(path, MOST_TEXT)
         elif path.suffix.lower() == ".npz":
             with path.open("rb") as file, np.load(file, allow_pickle=False) as arrays:
                 text = str(arrays["header" if "header" in arrays else "origin"])
@@ -175,9 +176,9 @@ def _read_record(path: Path) -> dict[str, Any]:
 
 def _read_comment(path: Path) -> Mark | None:
     try:
-        with path.open("rb") as file:
+        with open_file(path) as file:
             lines = file.read(_HEAD).splitlines()
-    except OSError:
+    except (OSError, InputError):
         return None
     comments = (line[1:].strip() for line in lines if line.startswith(b"#"))
     return next((mark for line in comments if (mark := parse_mark(line))), None)

@@ -14,9 +14,10 @@ from jaxtyping import Float
 from skinnet.appearance.colour import SkinColour
 from skinnet.calibration._exposure import fit_exposure
 from skinnet.calibration.colour_transform import calibrate
-from skinnet.errors import InputError
+from skinnet.errors import InputError, _check_count
+from skinnet.files._reading import MOST_TEXT, read_file
 from skinnet.images.srgb import srgb_to_linear
-from skinnet.physics.inversion import SkinInverse
+from skinnet.physics.inversion import SkinInverse, _check_axis
 from skinnet.physics.optics import SkinOptics
 from skinnet.physics.reflectance import SkinReflectance
 from skinnet.physics.sources import load_spectrum_to_srgb
@@ -68,6 +69,9 @@ class ColourSettings:
 
     def check(self) -> None:
         """Raise `InputError` for names and files that cannot be used, before long work begins."""
+        _check_count("seed", self.seed)
+        for name in ("f_mel", "f_blood"):  # as the table does, which is made after the fits
+            _check_axis(name, *getattr(self, name))
         load_spectrum_to_srgb(self.light, self.camera)
         SkinOptics.preset(self.optics)
         self.balance()
@@ -152,7 +156,7 @@ class ColourSettings:
     def _read_transform(self, samples: _Samples) -> "_ScanCalibration":
         path = Path(self.calibration)
         try:
-            transform = np.array(json.loads(path.read_text(encoding="utf-8"))["transform"], float)
+            transform = np.array(json.loads(read_file(path, MOST_TEXT))["transform"], float)
         except (OSError, ValueError, KeyError, TypeError) as error:
             raise InputError(
                 f"calibration is exposure, common, full, none, or a .json written by skinnet maps; "

@@ -1,5 +1,6 @@
 """The texture space of a shape model (section 4.2 of Alotaibi & Smith 2017)."""
 
+import math
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -42,6 +43,10 @@ class WarpSettings:
     def __post_init__(self) -> None:
         if not 16 <= self.size <= 8192:
             raise InputError(f"size is a number of texels from 16 to 8192; got {self.size}.")
+        if not 0 < self.limit < math.inf:
+            raise InputError(f"limit is a distance in mm above 0; got {self.limit}.")
+        if not 0 < self.angle <= 180:
+            raise InputError(f"angle is in (0, 180] degrees; got {self.angle}.")
 
 
 def embed_model(model: ShapeModel, own_uv: bool = False) -> ShapeModel:

@@ -14,6 +14,7 @@ import numpy as np
 from jaxtyping import Float
 
 from skinnet.errors import InputError
+from skinnet.files._reading import MOST_TEXT, read_file
 from skinnet.mesh._content import join_parts, read_content
 from skinnet.mesh._obj import read_obj_positions
 from skinnet.mesh._seams import match_positions, merge_coordinates
@@ -99,7 +100,7 @@ def _read_landmarks(path: Path, index: np.ndarray) -> dict[str, int]:
     if not path.is_file():
         return {}
     try:
-        listed = json.loads(path.read_text(encoding="utf-8"))["idx_to_landmark_verts"]
+        listed = json.loads(read_file(path, MOST_TEXT))["idx_to_landmark_verts"]
         place = {int(vertex): number for number, vertex in enumerate(index)}
         return _name_landmarks([place[vertex] for vertex in listed])
     except (ValueError, LookupError, TypeError) as error:

@@ -9,6 +9,8 @@ from xml.parsers import expat
 from xml.parsers.expat import ExpatError
 
 from skinnet.errors import InputError
+from skinnet.files import READ_ERRORS
+from skinnet.files._reading import MOST_TEXT, read_file
 
 # menpo's left and right are those of the picture: its left eye is the person's right one.
 _GROUPS = {
@@ -36,12 +38,16 @@ def parse_landmark_file(path: Path) -> Mapping[str, Any]:
     if parse is None:
         raise InputError(f"{path} is not a landmark file; give one of {', '.join(_PARSERS)}.")
     try:
-        return parse(path.read_bytes())
+        content = read_file(path, MOST_TEXT)
     except FileNotFoundError:
         raise InputError(f"There is no landmark file {path}; check the path.") from None
+    except OSError as error:
+        raise InputError(f"{path} cannot be read ({error.strerror}); check the path.") from error
+    try:
+        return parse(content)
     except InputError as error:
         raise InputError(f"{path} cannot be used: {error}.") from error
-    except (OSError, ExpatError, ValueError, LookupError, TypeError, AttributeError) as error:
+    except (*READ_ERRORS, ExpatError) as error:
         raise InputError(f"{path} is damaged or of another layout ({error!r}).") from error
 
 

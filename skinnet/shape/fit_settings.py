@@ -1,8 +1,9 @@
 """Settings of a fit, and the record of each of its stages."""
 
+import math
 from dataclasses import dataclass
 
-from skinnet.errors import InputError
+from skinnet.errors import InputError, _check_count
 
 
 @dataclass(frozen=True)
@@ -57,10 +58,19 @@ class FitSettings:
             raise InputError(f"kept is a share of the vertices in (0, 1]; got {self.kept}.")
         if not 0 <= self.sliding <= 1:
             raise InputError(f"sliding is a weight in [0, 1]; got {self.sliding}.")
-        if self.map_weight < 0:
+        if not 0 <= self.map_weight < math.inf:
             raise InputError(f"map_weight is 0 or more; got {self.map_weight}.")
+        if not 0 < self.angle <= 180:
+            raise InputError(f"angle is in (0, 180] degrees; got {self.angle}.")
+        if not 0 <= self.tolerance < math.inf:
+            raise InputError(f"tolerance is 0 or more; got {self.tolerance}.")
+        _check_count("iterations", self.iterations, 1)
+        _check_count("seed", self.seed)
         if not self.stages:
             raise InputError("stages is empty; give at least [[0, 0]], all vertices and modes.")
+        for stage in self.stages:
+            if not all(0 <= value < math.inf for value in stage):
+                raise InputError(f"a stage has numbers that are 0 or more; got {list(stage)}.")
 
 
 @dataclass(frozen=True)

@@ -9,7 +9,8 @@ from typing import Any
 import numpy as np
 
 from skinnet.errors import InputError
-from skinnet.files import READ_ERRORS, _explain_format, write_atomically
+from skinnet.files import READ_ERRORS, write_atomically
+from skinnet.files._content import explain_format
 from skinnet.mesh._mesh_parts import MESH_SUFFIXES
 from skinnet.shape._basel import load_basel_2009, load_basel_2017
 from skinnet.shape._default_model import build_default_model
@@ -160,7 +161,7 @@ def _read_own(path: Path, arrays: Mapping[str, Any]) -> ShapeModel:
         raise InputError(
             f"{path} has version {arrays[_KEY]}, and this skinnet reads version {VERSION}; "
             "make it again with this version, or use the one that wrote it "
-            f"({_explain_format(arrays[_KEY], int(VERSION), None)})."
+            f"({explain_format(arrays[_KEY], int(VERSION), None)})."
         )
     names, vertices = arrays["landmark_names"].tolist(), arrays["landmark_vertices"].tolist()
     return ShapeModel.from_arrays(

@@ -8,7 +8,7 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from skinnet.errors import InputError
+from skinnet.errors import InputError, _explain_missing
 from skinnet.inference._references.spectral_camera import BANDS, make_daylight_observer
 
 Array = NDArray[np.float64]
@@ -88,9 +88,7 @@ def require_chart_extra() -> Any:
     try:
         import colour_checker_detection
     except ImportError as error:
-        raise InputError(
-            f'A chart needs the extra chart: pip install "skinnet[chart]" ({error}).'
-        ) from error
+        raise _explain_missing(error, "chart", "A chart") from error
     return colour_checker_detection
 
 

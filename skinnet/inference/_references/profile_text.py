@@ -9,7 +9,9 @@ import yaml
 
 from skinnet._version import __version__
 from skinnet.errors import InputError
-from skinnet.files import _explain_format
+from skinnet.files._content import explain_format
+from skinnet.files._reading import read_file
+from skinnet.files._settings import load_yaml
 from skinnet.inference._references.shot_settings import ShotSettings
 from skinnet.inference._references.spectral_camera import COMPONENTS, list_lights
 from skinnet.inference._references.tone_curve import ToneCurve
@@ -90,7 +92,7 @@ def parse_profile(path: Path) -> ProfileContent:
     found = _read_yaml(path)
     version = found.get("format")
     if type(version) is not int or version != _FORMAT:
-        advice = _explain_format(version, _FORMAT, found.get("skinnet"))
+        advice = explain_format(version, _FORMAT, found.get("skinnet"))
         raise InputError(
             f"The capture profile {path} has format {version!r}, and this skinnet reads format "
             f"{_FORMAT} ({advice}). Make it again: skinnet capture."
@@ -106,7 +108,7 @@ def parse_profile(path: Path) -> ProfileContent:
 def _read_yaml(path: Path) -> dict[str, Any]:
     remedy = "give a file that `skinnet capture` has written"
     try:
-        data = path.read_bytes()
+        data = read_file(path)
     except FileNotFoundError:
         raise InputError(f"There is no capture profile {path}; {remedy}.") from None
     except OSError as error:
@@ -114,7 +116,7 @@ def _read_yaml(path: Path) -> dict[str, Any]:
     try:
         if len(data) > _MOST_BYTES:
             raise ValueError("it is too large")
-        found = yaml.safe_load(data.decode("utf-8"))
+        found = load_yaml(data.decode("utf-8"))
     except (yaml.YAMLError, ValueError, RecursionError) as error:
         raise InputError(f"{path} is not a capture profile; {remedy}.") from error
     if not isinstance(found, dict) or found.get("kind") != _KIND:

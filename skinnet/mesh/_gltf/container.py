@@ -10,7 +10,8 @@ from typing import Any
 from urllib.parse import unquote_to_bytes
 
 from skinnet.errors import InputError
-from skinnet.mesh._foreign_name import find_foreign_file
+from skinnet.files._reading import read_file
+from skinnet.mesh._foreign_name import describe_absence, find_foreign_file
 from skinnet.mesh._gltf.extensions import check_required, refuse_compression
 
 _MAGIC = b"glTF"
@@ -66,7 +67,7 @@ class GltfFile:
             )
         found = self._find(uri, kind)
         try:
-            return found.read_bytes()
+            return read_file(found)
         except OSError as error:
             raise InputError(
                 f"{found}, a {kind} of {self.path}, cannot be read ({error}); check the file."
@@ -77,8 +78,9 @@ class GltfFile:
         if found is None:
             more = ", give the picture with --texture" if kind == "picture" else ""
             raise InputError(
-                f"{self.path} names the {kind} {_shorten(uri)!r}, and there is no such file beside "
-                f"it; put it there{more}, or export the mesh as one .glb file."
+                f"{self.path} names the {kind} {_shorten(uri)!r}, and "
+                f"{describe_absence(uri.encode(), self.path.parent)}; put it beside the mesh"
+                f"{more}, or export the mesh as one .glb file."
             )
         if found.moved:
             note = f"{self.path} names the {kind} {uri!r}, which is not there; "
@@ -128,7 +130,7 @@ def open_gltf(path: Path) -> GltfFile:
             which is not read.
     """
     try:
-        data = path.read_bytes()
+        data = read_file(path)
     except OSError as error:
         raise InputError(f"{path} cannot be read ({error}); check the file.") from error
     if not data:

@@ -217,3 +217,31 @@ def test_real_scans_are_read_in_the_order_of_their_files(
     assert (len(mesh.vertices), len(mesh.triangles)) == (vertices, triangles)
     assert mesh.texture.shape == texture
     assert mesh.uv.min() >= 0 and mesh.uv.max() <= 1
+
+
+@pytest.mark.parametrize("named", ["../skin.png", "{}/skin.png", "file://{}/skin.png"])
+def test_a_picture_outside_of_the_folder_is_refused_in_words(tmp_path: Path, named: str) -> None:
+    """A mesh may come from anybody, and may name any file of the machine."""
+    picture(tmp_path / "skin.png")
+    (tmp_path / "scan").mkdir()
+    path = tmp_path / "scan" / "a.obj"
+    path.write_text(f"mtllib a.mtl\n{SQUARE}vt 0 0\nvt 1 0\nvt 1 1\nusemtl s\nf 1/1 2/2 3/3\n")
+    path.with_suffix(".mtl").write_text(f"newmtl s\nmap_Kd {named.format(tmp_path)}\n")
+    with pytest.raises(InputError, match=r"outside of the mesh's folder are not opened.*--texture"):
+        read_mesh(path)
+    assert read_mesh(path, tmp_path / "skin.png").texture is not None
+
+
+def test_materials_outside_of_the_folder_are_not_opened(tmp_path: Path) -> None:
+    (tmp_path / "a.mtl").write_text("newmtl s\nKd 1 0 0\n")
+    (tmp_path / "scan").mkdir()
+    path = tmp_path / "scan" / "b.obj"
+    path.write_text(f"mtllib ../a.mtl\n{SQUARE}usemtl s\nf 1 2 3\n")
+    notes = [each for each in read_mesh(path).notes if "a.mtl" in each]
+    assert len(notes) == 1 and "outside of the mesh's folder" in notes[0]
+
+
+def test_a_byte_that_is_not_utf_8_in_a_comment(tmp_path: Path) -> None:
+    path = tmp_path / "a.obj"
+    path.write_bytes(f"# Gr\u00f6\u00dfe\n{SQUARE}f 1 2 3\n".encode("latin-1"))
+    assert read_mesh(path).triangles.tolist() == [[0, 1, 2]]

@@ -53,7 +53,15 @@ def test_what_is_no_file_is_not_found(tmp_path: Path, name: str) -> None:
 
 def test_absolute_names(tmp_path: Path) -> None:
     (tmp_path / "Skin.png").write_text("")
-    folder = Path("/none")
-    assert find_named_file(folder, str(tmp_path / "Skin.png")) == tmp_path / "Skin.png"
-    assert find_named_file(folder, f"file://{tmp_path}/Skin.png") == tmp_path / "Skin.png"
-    assert find_named_file(folder, str(tmp_path / "skin.PNG")) == tmp_path / "Skin.png"
+    assert find_named_file(tmp_path, str(tmp_path / "Skin.png")) == tmp_path / "Skin.png"
+    assert find_named_file(tmp_path, f"file://{tmp_path}/Skin.png") == tmp_path / "Skin.png"
+    assert find_named_file(tmp_path, str(tmp_path / "skin.PNG")) == tmp_path / "Skin.png"
+
+
+@pytest.mark.parametrize("name", ["../skin.png", "{}/skin.png", "file://{}/SKIN.png", "a/../../a"])
+def test_no_path_leads_out_of_the_folder(tmp_path: Path, name: str) -> None:
+    (tmp_path / "skin.png").write_text("")
+    folder = tmp_path / "mesh"
+    folder.mkdir()
+    assert find_named_file(folder, name.format(tmp_path)) is None
+    assert find_named_file(folder, "../skin.png", tmp_path) is not None
