@@ -6,10 +6,12 @@ from collections.abc import Sequence
 from pathlib import Path
 
 from skinnet.errors import InputError, _explain_missing
+from skinnet.inference._messages import open_missing_streams, quit_at_interrupt
 
 
 def main(arguments: Sequence[str] | None = None) -> int:
     """Export a checkpoint; return 0, or 2 with a sentence on stderr for bad input."""
+    open_missing_streams()
     parser = argparse.ArgumentParser(
         prog="python -m export",
         description="Write a checkpoint as ONNX, compared with torch: the encoder to FILE, and "
@@ -39,14 +41,17 @@ def main(arguments: Sequence[str] | None = None) -> int:
     except (InputError, OSError) as error:
         print(f"export: {error}", file=sys.stderr)
         return 2
+    except KeyboardInterrupt:
+        return 130
     return 0
 
 
 def _export(checkpoint: Path, given: Path | None, half: bool) -> None:
     # Imported here, so that --help does not wait for torch.
-    from export.onnx_file import SIZES, export_model
-    from export.outputs import DEFAULT, choose_output, describe_checkpoint
-    from skinnet.network import SkinAutoencoder
+    with quit_at_interrupt():
+        from export.onnx_file import SIZES, export_model
+        from export.outputs import DEFAULT, choose_output, describe_checkpoint
+        from skinnet.network import SkinAutoencoder
 
     output = given or DEFAULT
     if output.suffix != ".onnx":

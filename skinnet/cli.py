@@ -8,7 +8,7 @@ from pathlib import Path
 
 from skinnet._version import __version__
 from skinnet.errors import InputError, _explain_missing
-from skinnet.inference._messages import report
+from skinnet.inference._messages import open_missing_streams, quit_at_interrupt, report
 
 PIPELINE = {
     "fit-shape": "fit a shape model to scans",
@@ -36,6 +36,7 @@ def main(argv: Sequence[str] | None = None) -> int:
         >>> main(["predict", "absent.jpg"])  # prints to standard error
         2
     """
+    open_missing_streams()
     parser = argparse.ArgumentParser(
         prog="skinnet", description="Melanin and hemoglobin maps of a photograph of skin."
     )
@@ -69,7 +70,8 @@ def main(argv: Sequence[str] | None = None) -> int:
 
 def _run_pipeline(verb: str, arguments: list[str]) -> int:
     try:
-        from skinnet.pipeline._command import run_verb
+        with quit_at_interrupt():
+            from skinnet.pipeline._command import run_verb
 
         return run_verb(verb, arguments, PIPELINE[verb])
     except ModuleNotFoundError as error:

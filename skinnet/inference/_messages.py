@@ -1,6 +1,47 @@
 """What the command prints: results to standard output, all else to standard error."""
 
+import os
+import signal
 import sys
+import threading
+from collections.abc import Iterator
+from contextlib import contextmanager
+
+
+def open_missing_streams() -> None:
+    """Open the null device in place of standard streams that the caller has closed.
+
+    Else the next file that is opened would get the number of one of them, and what a library prints
+    would be written into it.
+    """
+    for number, name in enumerate(("stdin", "stdout", "stderr")):
+        if getattr(sys, name) is not None:
+            continue
+        try:
+            os.fstat(number)
+        except OSError:
+            null = os.open(os.devnull, os.O_RDWR)
+            if null != number:
+                os.dup2(null, number)
+                os.close(null)
+        setattr(sys, name, open(number, "r" if number == 0 else "w", closefd=False))
+
+
+@contextmanager
+def quit_at_interrupt() -> Iterator[None]:
+    """End the process at Ctrl-C while libraries are imported and nothing is written yet.
+
+    Libraries turn a `KeyboardInterrupt` in the middle of their import into errors of their own.
+    """
+    usual = signal.getsignal(signal.SIGINT) is signal.default_int_handler
+    if not usual or threading.current_thread() is not threading.main_thread():
+        yield
+        return
+    signal.signal(signal.SIGINT, lambda *_: os._exit(130))
+    try:
+        yield
+    finally:
+        signal.signal(signal.SIGINT, signal.default_int_handler)
 
 
 def print_line(text: str) -> None:
