@@ -17,6 +17,7 @@ from skinnet.appearance.colour import SkinColour
 from skinnet.errors import InputError
 from skinnet.files import write_atomically
 from skinnet.files._content import describe_content, explain_format
+from skinnet.files._npz import read_npz
 
 MODEL_FORMAT = 1
 """Version of the layout of these files."""
@@ -105,11 +106,9 @@ def read_arrays(
     if not path.is_file():
         raise InputError(f"There is no file {path}; check the path.")
     try:
-        # NumPy does not close a file that is not an archive.
-        with path.open("rb") as opened, np.load(opened, allow_pickle=False) as file:
-            header = json.loads(str(file["header"]))
-            _check_header(path, kind, header)
-            return header, {name: file[name] for name in names}
+        header = json.loads(str(read_npz(path, ["header"])["header"]))
+        _check_header(path, kind, header)
+        return header, read_npz(path, names)
     except InputError:
         raise
     except ARCHIVE_ERRORS as error:

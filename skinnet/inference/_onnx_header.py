@@ -7,7 +7,7 @@ type and, for all but integers, a length. The graph is passed over by its length
 from collections.abc import Iterator, Mapping
 from io import BufferedIOBase, BytesIO
 from pathlib import Path
-from typing import NamedTuple
+from typing import BinaryIO, NamedTuple
 
 from skinnet.files._reading import open_file
 
@@ -90,7 +90,9 @@ def _read_pair(message: bytes) -> tuple[_Field, _Field]:
     return fields.get(1, absent), fields.get(2, absent)
 
 
-def _read_fields(file: BufferedIOBase, size: int) -> Iterator[_Field]:
+def _read_fields(
+    file: BufferedIOBase | BytesIO | BinaryIO, size: int, longest: int = _LONGEST
+) -> Iterator[_Field]:
     """The fields of a message; the last one lacks bytes if the message is cut short."""
     while file.tell() < size:
         tag = _read_integer(file)
@@ -106,12 +108,12 @@ def _read_fields(file: BufferedIOBase, size: int) -> Iterator[_Field]:
             yield _Field(number, wire, length, b"", 0)
             continue
         start = file.tell()
-        content = file.read(length) if length <= _LONGEST else b""
+        content = file.read(length) if length <= longest else b""
         yield _Field(number, wire, 0, content, max(0, start + length - size))
         file.seek(min(start + length, size))
 
 
-def _read_integer(file: BufferedIOBase) -> int | None:
+def _read_integer(file: BufferedIOBase | BytesIO | BinaryIO) -> int | None:
     """An integer of seven bits a byte, the lowest first; None at the end of the file."""
     value = 0
     for shift in range(0, 70, 7):

@@ -84,7 +84,10 @@ def open_session(path: Path, header: Header, threads: int | None) -> onnxruntime
     if threads is not None:
         options.intra_op_num_threads = threads
     try:
-        return onnxruntime.InferenceSession(path, options, providers=["CPUExecutionProvider"])
+        # Its fallback would try the same again, and print a banner.
+        return onnxruntime.InferenceSession(
+            path, options, providers=["CPUExecutionProvider"], enable_fallback=0
+        )
     except RUNTIME_ERRORS as error:
         raise InputError(f"{path} {_explain(str(error), header)}.") from error
 

@@ -20,6 +20,7 @@ from skinnet.inference._onnx_session import (
     name_versions,
     open_session,
 )
+from skinnet.inference._onnx_weights import check_weights
 from skinnet.inference.capture import Capture
 
 ONNX_FORMAT = "2"
@@ -116,6 +117,12 @@ class OnnxModel:
             values = self.session.run(names, dict(inputs))
         except RUNTIME_ERRORS as error:
             raise InputError(f"{self.path} failed on this photograph: {error}") from error
+        for name, value in zip(names, values, strict=True):
+            if not np.isfinite(value).all():
+                raise InputError(
+                    f"{self.path} gives numbers that are not finite ({name}); its weights are "
+                    f"damaged: {REMEDY}."
+                )
         return dict(zip(names, values, strict=True))
 
 
@@ -142,6 +149,7 @@ def open_model(path: Path, kind: str, threads: int | None = None) -> OnnxModel:
     header = identify(path, kind)
     # First, since a file that is newer than onnxruntime says so in its metadata too.
     _check_metadata(path, kind, header)
+    check_weights(path, REMEDY)
     session = open_session(path, header, threads)
     _check_names(path, kind, session)
     return _read_metadata(path, session, header.metadata)
@@ -168,9 +176,12 @@ def _check_metadata(path: Path, kind: str, header: Header) -> None:
 
 
 def _check_names(path: Path, kind: str, session: onnxruntime.InferenceSession) -> None:
-    inputs = {item.name for item in session.get_inputs()}
-    outputs = {item.name for item in session.get_outputs()}
-    optional = {item.name for item in session.get_overridable_initializers()}
+    try:
+        inputs = {item.name for item in session.get_inputs()}
+        outputs = {item.name for item in session.get_outputs()}
+        optional = {item.name for item in session.get_overridable_initializers()}
+    except UnicodeDecodeError as error:
+        raise InputError(f"{path} is damaged: a name in it is not UTF-8; {REMEDY}.") from error
     is_complete = _OPTIONAL[kind] <= optional and _OUTPUTS[kind] <= outputs
     if inputs != _INPUTS[kind] or not is_complete:
         found = ", ".join(sorted(inputs | optional))

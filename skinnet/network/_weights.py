@@ -1,18 +1,20 @@
 """Weights of an autoencoder as one safetensors file, with what is needed to rebuild it."""
 
 import json
+import math
 from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
 from pathlib import Path
 from typing import Any, NamedTuple
 
+import torch
 from safetensors import SafetensorError, safe_open
 from safetensors.torch import save
 from torch import Tensor
 
 from skinnet._version import __version__
 from skinnet.errors import InputError
-from skinnet.files import write_atomically
+from skinnet.files import READ_ERRORS, write_atomically
 from skinnet.files._content import describe_content, explain_format
 from skinnet.network._earlier_weights import EARLIER_FORMAT
 
@@ -20,6 +22,10 @@ WEIGHTS_FORMAT = 4
 """Version of weights and checkpoints; increase it whenever the meaning of a weight changes."""
 
 KIND = "autoencoder"
+_LARGEST = 1e5
+"""Largest weight of an encoder; those of the shipped one stay below a thousandth of it."""
+
+_REMEDY = "give one that training wrote, such as RUN/best.ckpt"
 _CONTENTS = {".ckpt": "a checkpoint of torch", ".safetensors": "weights in safetensors"}
 SHIPPED_WEIGHTS = Path(__file__).parents[1] / "inference" / "models" / "skin.safetensors"
 
@@ -63,7 +69,7 @@ def read_weights(path: Path) -> SavedModel:
         with safe_open(str(path), framework="pt") as file:
             metadata = file.metadata() or {}
             state = {name: file.get_tensor(name) for name in file.keys()}
-    except SafetensorError as error:
+    except (SafetensorError, *READ_ERRORS) as error:
         what = describe_other_content(path, ".safetensors")
         raise InputError(f"{path} is not a complete safetensors file{what} ({error}).") from error
     if metadata.get("skinnet.kind") != KIND:
@@ -72,9 +78,31 @@ def read_weights(path: Path) -> SavedModel:
         found, version = metadata.get("skinnet.format"), metadata.get("skinnet.version")
         raise make_format_error(path, found, version)
     with refuse_mismatch(path, metadata.get("skinnet.version")):
+        check_state(path, state)
         config = json.loads(metadata["skinnet.config"])
         version, number = metadata.get("skinnet.version"), int(metadata["skinnet.format"])
         return SavedModel(config, metadata["skinnet.trained_on"], state, version, number)
+
+
+def check_state(path: Path, state: Mapping[str, Any]) -> None:
+    """Check that weights are numbers, and of a size that training may find.
+
+    Raises:
+        InputError: A weight is no tensor, NaN, infinite, or larger.
+    """
+    for name, value in state.items():
+        if not isinstance(value, Tensor) or value.layout != torch.strided:
+            raise InputError(f"{path} holds {name}, which is no plain tensor; {_REMEDY}.")
+        values = value.detach().abs() if value.is_floating_point() else torch.zeros(1)
+        # The constants of the physics have units, in which they may be large.
+        largest = _LARGEST if "encoder." in name else math.inf
+        wrong = ~(values.isfinite() & (values <= largest))
+        if wrong.any():
+            found = value.detach()[wrong].flatten()[0].item()
+            raise InputError(
+                f"{path} has weights that are no weights of a trained model: {found:g} in {name}; "
+                f"{_REMEDY}."
+            )
 
 
 @contextmanager
@@ -82,7 +110,9 @@ def refuse_mismatch(path: Path, version: object = None) -> Iterator[None]:
     """Turn an error of rebuilding a model from its description into `InputError`."""
     try:
         yield
-    except (KeyError, TypeError, ValueError, RuntimeError) as error:
+    except InputError:
+        raise
+    except (KeyError, TypeError, ValueError, RuntimeError, AttributeError, OverflowError) as error:
         wrote = f"skinnet {version} wrote it, and this is skinnet {__version__}"
         other = version not in (None, __version__)
         raise InputError(

@@ -9,9 +9,12 @@ import torch
 
 from skinnet._version import __version__
 from skinnet.errors import InputError
+from skinnet.files import READ_ERRORS
+from skinnet.files._npz import check_zip
 from skinnet.network._weights import (
     WEIGHTS_FORMAT,
     SavedModel,
+    check_state,
     describe_other_content,
     make_format_error,
     refuse_mismatch,
@@ -44,15 +47,19 @@ def read_checkpoint(path: str | Path) -> dict[str, Any]:
     """  # noqa: E501 - a message of one line
     if not Path(path).is_file():
         raise InputError(f"There is no checkpoint {path}; give RUN/best.ckpt or RUN/last.ckpt.")
+    check_zip(Path(path))
     try:
         checkpoint = torch.load(path, map_location="cpu", weights_only=True)
-    except (RuntimeError, EOFError, pickle.UnpicklingError, OSError, ValueError) as error:
+    except (pickle.UnpicklingError, zipfile.BadZipFile, *READ_ERRORS) as error:
         raise InputError(_explain_unreadable(Path(path), error)) from error
     description = checkpoint.get("skinnet") if isinstance(checkpoint, dict) else None
     if not isinstance(description, dict):
         raise InputError(f"{path} is not a checkpoint of skinnet; another program wrote it.")
     if description.get("format") != WEIGHTS_FORMAT:
         raise make_format_error(path, description.get("format"), description.get("version"))
+    if not isinstance(checkpoint.get("state_dict"), dict):
+        raise InputError(f"{path} has no weights; give one that training wrote: RUN/best.ckpt.")
+    check_state(Path(path), checkpoint["state_dict"])
     return dict(checkpoint)
 
 

@@ -9,6 +9,7 @@ from torch import Tensor, nn
 
 from skinnet.errors import InputError
 
+_WIDEST, _MOST_LEVELS = 1024, 8
 WIDTHS = (24, 40, 80, 128, 160)
 """Channels of the U-Net at each level, finest first."""
 
@@ -81,6 +82,11 @@ class SkinEncoder(nn.Module):
         if not widths:
             raise InputError(
                 f"widths holds the channels of one level or more, as {WIDTHS}; got ()."
+            )
+        if len(widths) > _MOST_LEVELS or not all(1 <= width <= _WIDEST for width in widths):
+            raise InputError(
+                f"widths holds up to {_MOST_LEVELS} numbers of channels from 1 to {_WIDEST}; got "
+                f"{tuple(widths)}."
             )
         deepest = widths[-1]
         self.stem = _stage(3, widths[0], stride=2)

@@ -11,6 +11,7 @@ import numpy as np
 from skinnet.appearance._model_arrays import ARCHIVE_ERRORS
 from skinnet.errors import InputError
 from skinnet.files import write_atomically
+from skinnet.files._npz import read_npz
 from skinnet.shape.fit_settings import StageRecord
 from skinnet.shape.registration import Registration
 from skinnet.shape.similarity import Similarity
@@ -38,13 +39,11 @@ def save_fit(path: Path, fit: Registration, origin: Mapping[str, Any]) -> None:
 def load_fit(path: Path) -> Registration:
     """Read a fit; a file that is missing, damaged or of another kind is an `InputError`."""
     try:
-        with np.load(path, allow_pickle=False) as file:
-            pose = Similarity(file["rotation"], float(file["scale"]), file["translation"])
-            arrays = {name: file[name] for name in _ARRAYS}
-            stages = json.loads(str(file["stages"]))
-            record = tuple(StageRecord(**{**one, "rms": tuple(one["rms"])}) for one in stages)
-            return Registration(
-                pose, **arrays, millimetres=float(file["millimetres"]), record=record
-            )
+        file = read_npz(path)
+        pose = Similarity(file["rotation"], float(file["scale"]), file["translation"])
+        arrays = {name: file[name] for name in _ARRAYS}
+        stages = json.loads(str(file["stages"]))
+        record = tuple(StageRecord(**{**one, "rms": tuple(one["rms"])}) for one in stages)
+        return Registration(pose, **arrays, millimetres=float(file["millimetres"]), record=record)
     except ARCHIVE_ERRORS as error:
         raise InputError(f"{path} is no fitted shape; make it with skinnet fit-shape.") from error

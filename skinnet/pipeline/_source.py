@@ -8,10 +8,9 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-import numpy as np
-
 from skinnet.errors import InputError
 from skinnet.files import READ_ERRORS
+from skinnet.files._npz import read_npz
 from skinnet.files._reading import MOST_TEXT, open_file, read_file
 from skinnet.images._mark import Mark, parse_mark, read_mark
 from skinnet.images._result_names import compute_digest, describe_input, is_input
@@ -164,14 +163,20 @@ def _read_record(path: Path) -> dict[str, Any]:
         if path.suffix.lower() == ".json":
             text = read_file(path, MOST_TEXT)
         elif path.suffix.lower() == ".npz":
-            with path.open("rb") as file, np.load(file, allow_pickle=False) as arrays:
-                text = str(arrays["header" if "header" in arrays else "origin"])
+            text = _read_origin(path)
         else:
             return {}
         record = json.loads(text)
     except READ_ERRORS:
         return {}
     return record if isinstance(record, dict) else {}
+
+
+def _read_origin(path: Path) -> str:
+    try:
+        return str(read_npz(path, ["header"])["header"])
+    except KeyError:
+        return str(read_npz(path, ["origin"])["origin"])
 
 
 def _read_comment(path: Path) -> Mark | None:

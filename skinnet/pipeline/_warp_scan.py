@@ -5,7 +5,8 @@ import json
 import numpy as np
 
 from skinnet.errors import InputError
-from skinnet.files import write_atomically
+from skinnet.files import READ_ERRORS, write_atomically
+from skinnet.files._npz import read_npz
 from skinnet.pipeline._fit_shape import FittedScan
 from skinnet.pipeline._output import add_end
 from skinnet.pipeline._progress import compute_fingerprint, log, read_finished, write_record
@@ -28,8 +29,10 @@ def warp_scan(
     file, record = (add_end(fitted.stem, end) for end in ("_warp.npz", "_warp.json"))
     fingerprint = compute_fingerprint(fitted.fingerprint, settings, space.uv.tobytes().hex())
     if read_finished(record, fingerprint, [file]):
-        with np.load(file, allow_pickle=False) as file_:
-            return WarpedTexture(file_["image"], file_["mask"])
+        try:
+            return WarpedTexture(**read_npz(file, ("image", "mask")))
+        except READ_ERRORS:
+            log(f"{file} is damaged, and is made again.")
     limit = settings.limit / fitted.fit.millimetres
     warped = project_texture(space, fitted.mesh(model), fitted.scan.mesh, limit, settings.angle)
     covered = warped.mask.sum() / space.mask.sum()

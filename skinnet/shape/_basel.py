@@ -5,6 +5,7 @@ that layout, not on the models themselves.
 """
 
 import json
+import math
 from dataclasses import replace
 from pathlib import Path
 from typing import Any
@@ -12,12 +13,13 @@ from typing import Any
 import h5py
 import numpy as np
 from jaxtyping import Float, Int
-from scipy.io import loadmat
+from scipy.io import loadmat, whosmat
 from scipy.io.matlab import MatReadError
 from scipy.spatial import cKDTree
 
 from skinnet.errors import InputError
 from skinnet.files import READ_ERRORS
+from skinnet.files._npz import check_size
 from skinnet.mesh._orientation import is_inside_out
 from skinnet.shape.model import ShapeModel
 
@@ -51,8 +53,11 @@ def load_basel_2009(path: Path) -> ShapeModel:
     """
     names = ("shapeMU", "shapePC", "shapeEV", "tl")
     try:
+        check_size(path, sum(8 * math.prod(shape) for _, shape, _ in whosmat(path)))
         arrays = loadmat(path, variable_names=names)
         mean, modes, deviations, triangles = (np.asarray(arrays[name]) for name in names)
+    except InputError:
+        raise
     except (MatReadError, *READ_ERRORS) as error:
         raise InputError(
             f"{path} is not a Basel Face Model of 2009, whose .mat holds {', '.join(names)} "
@@ -72,12 +77,15 @@ def load_basel_2017(path: Path) -> ShapeModel:
     """
     try:
         with h5py.File(path, "r") as file:
+            check_size(path, _count_bytes(file))
             mean, modes, variances = (
                 np.asarray(file[f"shape/model/{name}"])
                 for name in ("mean", "pcaBasis", "pcaVariance")
             )
             cells = np.asarray(file["shape/representer/cells"]).astype(np.int64)
             points = _read_landmarks(file)
+    except InputError:
+        raise
     except READ_ERRORS as error:
         raise InputError(
             f"{path} is not a Basel Face Model of 2017 or 2019, whose .h5 holds shape/model/mean, "
@@ -87,6 +95,12 @@ def load_basel_2017(path: Path) -> ShapeModel:
     return _build_model(
         path, mean, modes, variances.astype(np.float64).ravel(), triangles, points, 1.0
     )
+
+
+def _count_bytes(file: h5py.File) -> int:
+    """Count the bytes of the arrays that are read, as they are unpacked."""
+    names = ("model/mean", "model/pcaBasis", "model/pcaVariance", "representer/cells")
+    return sum(file[f"shape/{name}"].nbytes for name in names)
 
 
 def _build_model(

@@ -1,6 +1,5 @@
 """Files of shape models: skinnet's own .npz, ICT-FaceKit, Basel Face Models, meshes."""
 
-import zipfile
 from collections.abc import Callable, Mapping
 from dataclasses import replace
 from pathlib import Path
@@ -11,6 +10,7 @@ import numpy as np
 from skinnet.errors import InputError
 from skinnet.files import READ_ERRORS, write_atomically
 from skinnet.files._content import explain_format
+from skinnet.files._npz import read_npz
 from skinnet.mesh._mesh_parts import MESH_SUFFIXES
 from skinnet.shape._basel import load_basel_2009, load_basel_2017
 from skinnet.shape._default_model import build_default_model
@@ -133,9 +133,12 @@ def _load_folder(folder: Path, align: bool, millimetres: float | None) -> ShapeM
 
 def _load_npz(path: Path) -> ShapeModel:
     try:
-        with path.open("rb") as stream, np.load(stream, allow_pickle=False) as file:
-            arrays = {name: file[name] for name in file.files if not name.startswith("expr_")}
-    except (zipfile.BadZipFile, *READ_ERRORS) as error:
+        arrays = {
+            name: array for name, array in read_npz(path).items() if not name.startswith("expr_")
+        }
+    except InputError:
+        raise
+    except READ_ERRORS as error:
         raise InputError(
             f"{path} is not an .npz of plain arrays, or is cut short ({error}); copy it again."
         ) from error

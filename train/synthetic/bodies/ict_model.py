@@ -2,12 +2,12 @@
 
 from dataclasses import dataclass
 from pathlib import Path
-from zipfile import BadZipFile
 
 import numpy as np
 from jaxtyping import Float, Int, UInt8
 
 from skinnet.errors import InputError
+from skinnet.files._npz import read_npz
 from train.synthetic.bodies.ict_chart import chart_skin
 from train.synthetic.labels import EYE, MOUTH, SKIN, TEETH
 
@@ -76,15 +76,14 @@ def read_ict_model(path: Path) -> IctModel:
 
 def _read_arrays(path: Path) -> dict[str, np.ndarray]:
     try:
-        # A file that is opened here is closed even if NumPy refuses it.
-        with path.open("rb") as stream, np.load(stream, allow_pickle=False) as file:
-            arrays = {name: file[name] for name in ARRAYS}
+        arrays = read_npz(path, ARRAYS)
+    except InputError:
+        raise
     except KeyError as error:
         raise InputError(
-            f"{path} lacks {error.args[0].split()[0]}; an .npz of ICT-FaceKit holds "
-            f"{', '.join(ARRAYS)}."
+            f"{path} lacks {error.args[0]}; an .npz of ICT-FaceKit holds {', '.join(ARRAYS)}."
         ) from error
-    except (OSError, ValueError, EOFError, TypeError, BadZipFile) as error:
+    except (OSError, ValueError) as error:
         raise InputError(f"{path} cannot be read as an .npz of arrays; copy it again.") from error
     for name, shape in ARRAYS.items():
         found = arrays[name].shape

@@ -8,11 +8,11 @@ from dataclasses import asdict, dataclass
 from functools import cache, partial
 from multiprocessing import get_context
 from pathlib import Path
-from zipfile import BadZipFile
 
 import numpy as np
 
 from skinnet.files import make_folder, write_atomically
+from skinnet.files._npz import read_npz
 from train.synthetic.bodies.ict_model import IctModel, read_ict_model
 from train.synthetic.bodies.labelled_mesh import LabelledMesh
 from train.synthetic.casts.any_cast import cast_any
@@ -162,11 +162,11 @@ def _write(path: Path, cast: HeadCast, settings: CastSettings) -> None:
 def _load(stack: HeadCast, index: int, path: Path, settings: CastSettings) -> bool:
     """Copy a cast into the stack, if the file holds the one that is asked for."""
     try:
-        with path.open("rb") as stream, np.load(stream, allow_pickle=False) as file:
-            if json.loads(str(file["settings"])) != asdict(settings):
-                return False
-            arrays = [file[_STORED[name]] for name in HeadCast._fields]
-    except (OSError, ValueError, KeyError, EOFError, TypeError, BadZipFile):
+        file = read_npz(path)
+        if json.loads(str(file["settings"])) != asdict(settings):
+            return False
+        arrays = [file[_STORED[name]] for name in HeadCast._fields]
+    except (OSError, ValueError, KeyError):
         return False
     for whole, one in zip(stack, arrays, strict=True):
         if whole.shape[1:] != one.shape or whole.dtype != one.dtype:

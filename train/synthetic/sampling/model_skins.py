@@ -2,7 +2,6 @@
 
 from pathlib import Path
 from typing import NamedTuple
-from zipfile import BadZipFile
 
 import numpy as np
 import torch
@@ -10,6 +9,7 @@ from jaxtyping import Float16
 
 from skinnet.errors import InputError
 from skinnet.files import write_atomically
+from skinnet.files._npz import read_npz
 from train.synthetic.scene import CHART_SIZE, FaceParameters
 
 MODEL_SKIN_SHARE = 0.5
@@ -85,13 +85,15 @@ def load_model_skins(path: Path) -> ModelSkins:
         InputError: For a file that is missing, damaged or something else.
     """
     try:
-        with path.open("rb") as stream, np.load(stream, allow_pickle=False) as file:
-            skins = ModelSkins(*(file[_STORED[name]] for name in ModelSkins._fields))
+        file = read_npz(path)
+        skins = ModelSkins(*(file[_STORED[name]] for name in ModelSkins._fields))
+    except InputError:
+        raise
     except KeyError as error:
         raise InputError(
             f"{path} lacks melanin or blood; make it with python -m train.synthetic.skins."
         ) from error
-    except (OSError, ValueError, EOFError, TypeError, AttributeError, BadZipFile) as error:
+    except (OSError, ValueError) as error:
         raise InputError(f"{path} cannot be read as an .npz of arrays; make it again.") from error
     for name, charts in skins._asdict().items():
         _check(path, _STORED[name], charts, len(skins.melanin) if skins.melanin.ndim else 0)
