@@ -30,6 +30,7 @@ from train.monitors import check_monitors, list_logged
 from train.pairs import PortraitPairs
 from train.portraits import Portraits
 from train.refusals import explain_refusals, find_guilty, list_given, write_refusal
+from train.resumption import check_resumption
 from train.run_folder import RunFolder, check_run_folder
 from train.synthetic.faces import SyntheticFaces
 from train.task import SkinTask
@@ -144,12 +145,17 @@ class SkinCLI(LightningCLI):
         given = list_given(self.given)
         return write_refusal(error, given, find_guilty(given, settings) if settings else [])
 
+    def _check_checkpoint(self, training: bool) -> None:
+        if self.given.ckpt_path is not None:
+            check_resumption(self.given.ckpt_path, self.model, training)
+
     def fit(self, **kwargs: Any) -> None:
         """Train.
 
         Raises:
             InputError: If Lightning refuses the flags, or if no step is taken.
         """
+        self._check_checkpoint(training=True)
         with explain_refusals(self._explain):
             self.trainer.fit(**kwargs)
         # Processes that were spawned give nothing back but their metrics.
@@ -160,11 +166,13 @@ class SkinCLI(LightningCLI):
 
     def validate(self, **kwargs: Any) -> None:
         """Evaluate a checkpoint on the validation data."""
+        self._check_checkpoint(training=False)
         with explain_refusals(self._explain):
             self.trainer.validate(**kwargs)
 
     def test(self, **kwargs: Any) -> None:
         """Evaluate a checkpoint on the test data."""
+        self._check_checkpoint(training=False)
         with explain_refusals(self._explain):
             self.trainer.test(**kwargs)
 
