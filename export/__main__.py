@@ -6,7 +6,12 @@ from collections.abc import Sequence
 from pathlib import Path
 
 from skinnet.errors import InputError, _explain_missing
-from skinnet.inference._messages import open_missing_streams, quit_at_interrupt
+from skinnet.inference._messages import (
+    describe,
+    note_removed,
+    open_missing_streams,
+    quit_at_interrupt,
+)
 
 
 def main(arguments: Sequence[str] | None = None) -> int:
@@ -39,10 +44,12 @@ def main(arguments: Sequence[str] | None = None) -> int:
         print(f"export: {sentence}", file=sys.stderr)
         return 2
     except (InputError, OSError) as error:
-        print(f"export: {error}", file=sys.stderr)
+        print(f"export: {describe(error)}", file=sys.stderr)
         return 2
     except KeyboardInterrupt:
         return 130
+    finally:
+        note_removed()
     return 0
 
 

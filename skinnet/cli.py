@@ -8,7 +8,12 @@ from pathlib import Path
 
 from skinnet._version import __version__
 from skinnet.errors import InputError, _explain_missing
-from skinnet.inference._messages import open_missing_streams, quit_at_interrupt, report
+from skinnet.inference._messages import (
+    note_removed,
+    open_missing_streams,
+    quit_at_interrupt,
+    report,
+)
 
 PIPELINE = {
     "fit-shape": "fit a shape model to scans",
@@ -65,6 +70,8 @@ def main(argv: Sequence[str] | None = None) -> int:
         return _BAD_INPUT
     except KeyboardInterrupt:
         return _INTERRUPTED
+    finally:
+        note_removed()
     return code
 
 

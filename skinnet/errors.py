@@ -1,5 +1,7 @@
 """Errors whose messages state what the user can do."""
 
+import errno
+
 
 class InputError(ValueError):
     """An input cannot be used; the message names it, gives its value and states what to do.
@@ -14,6 +16,27 @@ class InputError(ValueError):
 
 class NoFaceError(InputError):
     """No face was found in a photograph."""
+
+
+_REMEDIES = {
+    errno.ENOSPC: "free some space, or {}",
+    errno.EDQUOT: "free some space, or {}",
+    errno.EROFS: "it cannot be written to: {}",
+    errno.ENAMETOOLONG: "give it a shorter name",
+    errno.EMFILE: "close other files, or raise the limit: ulimit -n 4096",
+}
+"""What to do about an error of the system; else the path is to be checked."""
+
+
+def _explain_fault(error: OSError, usual: str = "check the path") -> str:
+    """Explain an error of the system, in brackets, and what to do about it.
+
+    Args:
+        error: The error.
+        usual: What to do if the error says nothing better.
+    """
+    remedy = _REMEDIES.get(error.errno or 0, "{}").format(usual)
+    return f"({error.strerror or error}); {remedy}"
 
 
 def _check_count(name: str, value: int, least: int = 0) -> None:

@@ -10,15 +10,33 @@ from jaxtyping import Float
 from lightning import Callback, LightningModule, Trainer
 from lightning.pytorch.callbacks import ModelCheckpoint
 from lightning.pytorch.loggers import TensorBoardLogger
+from lightning.pytorch.plugins.io import TorchCheckpointIO
 from lightning.pytorch.utilities import rank_zero_only
 from PIL import Image
 from torch import Tensor
 
+from skinnet.files import write_atomically
 from skinnet.images._mark import Mark
 from skinnet.network import F_BLOOD_MAX, F_MEL_MAX, Reading
 from skinnet.physics import to_display
 from train.batch import Batch
 from train.task import Batches, name_batches
+
+
+class WholeCheckpoints(TorchCheckpointIO):
+    """Writes every checkpoint completely or not at all.
+
+    Lightning writes into the file itself, which a kill or a full disk then leaves cut short.
+    """
+
+    def save_checkpoint(
+        self, checkpoint: dict[str, Any], path: str | Path, storage_options: Any = None
+    ) -> None:
+        """Write a checkpoint beside its place, and rename it."""
+        target = Path(path)
+        target.parent.mkdir(parents=True, exist_ok=True)
+        with write_atomically(target) as part:
+            torch.save(checkpoint, part)
 
 
 class LastCheckpoint(Callback):
@@ -49,11 +67,7 @@ class LastCheckpoint(Callback):
             self._save(trainer)
 
     def _save(self, trainer: Trainer) -> None:
-        # Renamed into place, so that a kill while writing leaves the earlier checkpoint.
-        beside = self.path.with_name(".last.ckpt.part")
-        trainer.save_checkpoint(beside, weights_only=False)
-        if trainer.is_global_zero:
-            beside.replace(self.path)
+        trainer.save_checkpoint(self.path, weights_only=False)
         self.saved = time.monotonic()
 
 
@@ -110,7 +124,8 @@ class PictureGrid(Callback):
         pixels = (picture.permute(1, 2, 0) * 255).round().byte().cpu().numpy()
         mark = Mark("fit", "pictures").to_png_info()  # they are no photographs to train on
         path = self.folder / f"step_{trainer.global_step:06d}.png"
-        Image.fromarray(pixels).save(path, pnginfo=mark)
+        with write_atomically(path) as part:
+            Image.fromarray(pixels).save(part, pnginfo=mark)
         for logger in trainer.loggers:
             if isinstance(logger, TensorBoardLogger):
                 logger.experiment.add_image("portraits", picture, trainer.global_step)

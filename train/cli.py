@@ -19,9 +19,16 @@ from lightning.pytorch.cli import LightningArgumentParser, LightningCLI
 from lightning.pytorch.loggers import Logger
 
 from skinnet.errors import InputError
+from skinnet.inference._messages import describe, note_removed
 from skinnet.network import read_checkpoint
 from skinnet.pipeline._sentence_parser import SentenceParser
-from train.callbacks import LastCheckpoint, PictureGrid, make_best_checkpoint, report_best
+from train.callbacks import (
+    LastCheckpoint,
+    PictureGrid,
+    WholeCheckpoints,
+    make_best_checkpoint,
+    report_best,
+)
 from train.fitted import FittedFaces
 from train.flags import check_flags, check_trainer, describe_no_step
 from train.guards import FiniteGuard
@@ -113,6 +120,7 @@ class SkinCLI(LightningCLI):
             "logger": loggers + _as_list(wanted.logger),
             "callbacks": callbacks,
             "default_root_dir": self.given.run,
+            "plugins": [*_as_list(wanted.plugins), WholeCheckpoints()],
             **kwargs,
         }
         with explain_refusals(lambda error: self._explain(error, settings)):
@@ -244,8 +252,10 @@ def main(arguments: Sequence[str] | None = None) -> int:
         print(f"train: {describe_full_memory(error)}", file=sys.stderr)
         return 2
     except (InputError, OSError) as error:
-        print(f"train: {error}", file=sys.stderr)
+        print(f"train: {describe(error)}", file=sys.stderr)
         return 2
+    finally:
+        note_removed()
     return 0
 
 

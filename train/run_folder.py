@@ -7,7 +7,7 @@ from typing import Any
 
 from lightning import Callback, LightningModule, Trainer
 
-from skinnet.errors import InputError
+from skinnet.errors import InputError, _explain_fault
 from skinnet.files import write_text
 from train.logs import CurveLogger, EventLogger
 from train.portraits import Portraits, write_skipped
@@ -152,5 +152,5 @@ def check_writable(folder: Path, remedy: str) -> None:
             pass
     except OSError as error:
         raise InputError(
-            f"{folder} cannot be written ({error.strerror}); give {remedy}."
+            f"{folder} cannot be written {_explain_fault(error, f'give {remedy}')}."
         ) from error

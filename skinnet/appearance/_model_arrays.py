@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 from skinnet._version import __version__
 from skinnet.appearance._principal import PrincipalComponents
 from skinnet.appearance.colour import SkinColour
-from skinnet.errors import InputError
+from skinnet.errors import InputError, _explain_fault
 from skinnet.files import write_atomically
 from skinnet.files._content import describe_content, explain_format
 from skinnet.files._npz import read_npz
@@ -96,7 +96,7 @@ def write_arrays(path: Path, kind: str, header: dict[str, Any], arrays: dict[str
         with write_atomically(path) as part:
             np.savez(part, header=np.array(json.dumps(header)), **arrays)
     except OSError as error:
-        raise InputError(f"{path} cannot be written ({error.strerror}); check the path.") from error
+        raise InputError(f"{path} cannot be written {_explain_fault(error)}.") from error
 
 
 def read_arrays(

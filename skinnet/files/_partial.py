@@ -1,12 +1,41 @@
 """Files that are written completely or not at all."""
 
 import os
+import re
+import socket
+import threading
+import time
+import zlib
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager, suppress
 from pathlib import Path
 from secrets import token_hex
 
-from skinnet.errors import InputError
+from skinnet.errors import InputError, _explain_fault
+
+
+def _name_host() -> str:
+    """Name the machine, or the container, in which the number of a process means a process."""
+    name = socket.gethostname()
+    with suppress(OSError, AttributeError):
+        name += os.readlink("/proc/self/ns/pid")
+    return f"{zlib.crc32(name.encode()):08x}"
+
+
+_HOST = _name_host()
+_PARTIAL = re.compile(r"\.skinnet-([0-9a-f]{8})-(\d+)-[0-9a-f]{12}\.(?:part|old)(?:\..*)?")
+"""Names of partial files: the machine and the process that write them."""
+
+_EARLIER = re.compile(r"\.(?:[0-9a-f]{12}\.(?:part|old)(?:\.\w+)?|last\.ckpt\.part)")
+"""Names that earlier versions gave, which do not say who writes them."""
+
+_ABANDONED = 86400.0
+"""Seconds after which a partial file is abandoned whose process is not known here."""
+
+_sweeping = threading.Lock()
+_looked_at: set[Path] = set()
+_own: set[str] = set()
+_removed: list[Path] = []
 
 
 @contextmanager
@@ -35,7 +64,8 @@ def write_together() -> Iterator[Callable[[Path], Path]]:
     def name_temporary(path: Path) -> Path:
         if path.is_dir():
             raise InputError(f"{path} is a folder, but a file of that name must be written.")
-        return parts.setdefault(path, path.with_name(f".{token_hex(6)}.part{path.suffix}"))
+        _sweep(path.absolute().parent)
+        return parts.setdefault(path, _name_beside(path, "part"))
 
     renamed: list[Path] = []
     older: dict[Path, Path] = {}
@@ -56,9 +86,56 @@ def write_together() -> Iterator[Callable[[Path], Path]]:
         kept.unlink(missing_ok=True)
 
 
+def take_removed() -> list[Path]:
+    """Take the list of partial files that were removed, which an interrupted process had left."""
+    taken = list(_removed)
+    _removed.clear()
+    return taken
+
+
+def _name_beside(path: Path, kind: str) -> Path:
+    name = f".skinnet-{_HOST}-{os.getpid()}-{token_hex(6)}.{kind}{path.suffix}"
+    _own.add(name)
+    return path.with_name(name)
+
+
+def _sweep(folder: Path) -> None:
+    """Remove the partial files of processes that were killed, once for each folder."""
+    with _sweeping, suppress(OSError):
+        if folder in _looked_at:
+            return
+        _looked_at.add(folder)
+        for entry in os.scandir(folder):
+            if entry.name not in _own and _is_abandoned(entry):
+                os.unlink(entry.path)
+                _removed.append(Path(entry.path))
+
+
+def _is_abandoned(entry: "os.DirEntry[str]") -> bool:
+    found = _PARTIAL.fullmatch(entry.name)
+    if found is None and _EARLIER.fullmatch(entry.name) is None:
+        return False
+    if found is not None and found[1] == _HOST and os.name == "posix":
+        return not _is_running(int(found[2]))
+    return time.time() - entry.stat(follow_symlinks=False).st_mtime > _ABANDONED
+
+
+def _is_running(process: int) -> bool:
+    """Whether a process of this machine runs; files with the number of this one are another's."""
+    if process == os.getpid():
+        return False
+    try:
+        os.kill(process, 0)
+    except (ProcessLookupError, OverflowError):
+        return False
+    except OSError:  # it is another user's
+        return True
+    return True
+
+
 def _keep_older(path: Path, older: dict[Path, Path]) -> None:
     """Give a file that is about to be replaced a second name, until all have been written."""
-    kept = path.with_name(f".{token_hex(6)}.old{path.suffix}")
+    kept = _name_beside(path, "old")
     with suppress(OSError, NotImplementedError):  # there is none, or links are unknown
         os.link(path, kept, follow_symlinks=False)
         older[path] = kept
@@ -106,7 +183,7 @@ def make_folder(folder: Path, remedy: str) -> Path:
     try:
         folder.mkdir(parents=True, exist_ok=True)
     except OSError as error:
-        raise InputError(f"{folder} cannot be made ({error.strerror}); {remedy}.") from error
+        raise InputError(f"{folder} cannot be made {_explain_fault(error, remedy)}.") from error
     return folder
 
 

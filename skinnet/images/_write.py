@@ -8,7 +8,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from skinnet.errors import InputError
+from skinnet.errors import InputError, _explain_fault
 from skinnet.files import READ_ERRORS, write_atomically
 from skinnet.images import _writers as writers
 from skinnet.images._carried import Carried, carry
@@ -161,10 +161,9 @@ def write_picture(path: Path, picture: Picture, mark: Mark | None = None) -> tup
     except InputError:
         raise
     except READ_ERRORS as error:  # encoders refuse by many of them, such as sizes above a limit
-        reason = getattr(error, "strerror", None) or error
-        raise InputError(
-            f"{path} cannot be written ({reason}); choose another file with -o."
-        ) from error
+        fault = error if isinstance(error, OSError) else OSError(str(error))
+        explained = _explain_fault(fault, "choose another file with -o")
+        raise InputError(f"{path} cannot be written {explained}.") from error
     return tuple(notes)
 
 

@@ -7,7 +7,7 @@ from collections.abc import Iterable, Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
-from skinnet.errors import InputError
+from skinnet.errors import InputError, _explain_fault
 from skinnet.images._result_names import lock_folder
 
 
@@ -45,7 +45,8 @@ class CsvFile:
                 self._append(file, rows)
         except OSError as error:
             raise InputError(
-                f"{self.path} cannot be written ({error.strerror}); choose another file with --csv."
+                f"{self.path} cannot be written "
+                f"{_explain_fault(error, 'choose another file with --csv')}."
             ) from error
 
     def _append(self, file: io.FileIO, rows: Iterable[Mapping[str, Any]]) -> None:

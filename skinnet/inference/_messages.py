@@ -7,6 +7,9 @@ import threading
 from collections.abc import Iterator
 from contextlib import contextmanager
 
+from skinnet.errors import _explain_fault
+from skinnet.files._partial import take_removed
+
 
 def open_missing_streams() -> None:
     """Open the null device in place of standard streams that the caller has closed.
@@ -59,10 +62,18 @@ def report(error: Exception) -> None:
     note(describe(error))
 
 
+def note_removed() -> None:
+    """Print which partial files were removed, if any were."""
+    removed = take_removed()
+    if removed:
+        folders = ", ".join(dict.fromkeys(str(path.parent) for path in removed))
+        note(f"{len(removed)} partial files of an interrupted run were removed from {folders}.")
+
+
 def describe(error: Exception) -> str:
     """Describe an error in a sentence."""
     if isinstance(error, OSError):
-        return f"{error.filename or 'A file'} cannot be used ({error.strerror}); check the path."
+        return f"{error.filename or 'A file'} cannot be used {_explain_fault(error)}."
     return str(error)
 
 

@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from skinnet.errors import InputError
+from skinnet.errors import InputError, _explain_fault
 from skinnet.files import write_text
 from skinnet.images.photograph import read_picture
 from skinnet.images.picture import Picture
@@ -169,7 +169,7 @@ class CaptureProfile:
         try:
             write_text(target, format_profile(content))
         except OSError as error:
-            raise InputError(f"{target} cannot be written ({error.strerror}).") from error
+            raise InputError(f"{target} cannot be written {_explain_fault(error)}.") from error
 
     @property
     def light(self) -> Any:

@@ -11,7 +11,7 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from skinnet.errors import InputError
+from skinnet.errors import InputError, _explain_fault
 from skinnet.files import write_text, write_together
 from skinnet.images._mark import Mark
 from skinnet.images._png_file import write_png
@@ -130,7 +130,7 @@ def _make_folder(folder: Path) -> Path:
 
 def _describe_fault(folder: Path, error: OSError) -> InputError:
     return InputError(
-        f"{folder} cannot be written ({error.strerror}); choose another folder with -o."
+        f"{folder} cannot be written {_explain_fault(error, 'choose another folder with -o')}."
     )
 
 

@@ -7,7 +7,7 @@ import numpy as np
 import torch
 from jaxtyping import Float16
 
-from skinnet.errors import InputError
+from skinnet.errors import InputError, _explain_fault
 from skinnet.files import write_atomically
 from skinnet.files._npz import read_npz
 from train.synthetic.scene import CHART_SIZE, FaceParameters
@@ -69,7 +69,7 @@ def save_model_skins(path: Path, skins: ModelSkins) -> None:
         with write_atomically(path) as part:
             np.savez_compressed(part, **arrays)
     except OSError as error:
-        raise InputError(f"{path} cannot be written ({error.strerror}); check the path.") from error
+        raise InputError(f"{path} cannot be written {_explain_fault(error)}.") from error
 
 
 def load_model_skins(path: Path) -> ModelSkins:
