@@ -7,10 +7,10 @@ from pathlib import Path
 
 from skinnet.errors import InputError, _explain_missing
 from skinnet.inference._messages import (
-    describe,
     note_removed,
     open_missing_streams,
     quit_at_interrupt,
+    report,
 )
 
 
@@ -41,10 +41,10 @@ def main(arguments: Sequence[str] | None = None) -> int:
         _export(options.checkpoint, options.output, options.half)
     except ModuleNotFoundError as error:
         sentence = _explain_missing(error, "export", "python -m export", '-e ".[export]"')
-        print(f"export: {sentence}", file=sys.stderr)
+        report(sentence, "export")
         return 2
     except (InputError, OSError) as error:
-        print(f"export: {describe(error)}", file=sys.stderr)
+        report(error, "export")
         return 2
     except KeyboardInterrupt:
         return 130
@@ -77,11 +77,11 @@ def _export(checkpoint: Path, given: Path | None, half: bool) -> None:
     reports = export_model(model, output, half, describe_checkpoint(checkpoint, output))
     sizes = ", ".join("x".join(map(str, size)) for size in SIZES)
     print(f"compared with torch at {sizes} (batch x height x width)")
-    for report in reports:
-        name, worst = max(report.difference.items(), key=lambda item: item[1])
+    for each in reports:
+        name, worst = max(each.difference.items(), key=lambda item: item[1])
         print(
-            f"{report.path}: {report.megabytes:.2f} MB, largest difference {worst:.1e} of "
-            f"the range ({name}), {report.milliseconds:.0f} ms at 256 x 256"
+            f"{each.path}: {each.megabytes:.2f} MB, largest difference {worst:.1e} of "
+            f"the range ({name}), {each.milliseconds:.0f} ms at 256 x 256"
         )
 
 

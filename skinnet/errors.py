@@ -22,7 +22,7 @@ _REMEDIES = {
     errno.ENOSPC: "free some space, or {}",
     errno.EDQUOT: "free some space, or {}",
     errno.EROFS: "it cannot be written to: {}",
-    errno.ENAMETOOLONG: "give it a shorter name",
+    errno.ENAMETOOLONG: "give the input a shorter name",
     errno.EMFILE: "close other files, or raise the limit: ulimit -n 4096",
 }
 """What to do about an error of the system; else the path is to be checked."""

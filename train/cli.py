@@ -19,7 +19,7 @@ from lightning.pytorch.cli import LightningArgumentParser, LightningCLI
 from lightning.pytorch.loggers import Logger
 
 from skinnet.errors import InputError
-from skinnet.inference._messages import describe, note_removed
+from skinnet.inference._messages import note, note_removed, report
 from skinnet.network import read_checkpoint
 from skinnet.pipeline._sentence_parser import SentenceParser
 from train.callbacks import (
@@ -249,10 +249,10 @@ def main(arguments: Sequence[str] | None = None) -> int:
                 parser_kwargs={"prog": "python -m train"},
             )
     except torch.OutOfMemoryError as error:
-        print(f"train: {describe_full_memory(error)}", file=sys.stderr)
+        note(describe_full_memory(error), "train")
         return 2
     except (InputError, OSError) as error:
-        print(f"train: {describe(error)}", file=sys.stderr)
+        report(error, "train")
         return 2
     finally:
         note_removed()

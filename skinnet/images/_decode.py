@@ -20,6 +20,9 @@ from skinnet.images.picture import Picture
 MAX_PIXELS = 100_000_000
 """Largest photograph that is decoded; its arrays take about 4 GB."""
 
+_FEW_PIXELS, _PIXELS_A_BYTE = 4_000_000, 1000
+"""Pictures that are never too large, and pixels of a byte; strong compression reaches a hundred."""
+
 PHOTO_FORMATS = ("JPEG", "PNG", "TIFF", "WEBP", "AVIF", "JPEG2000", "BMP", "GIF", "PPM", "MPO")
 """Formats that Pillow reads; its others hold no photographs or start other programs."""
 
@@ -52,6 +55,7 @@ def decode_image(image: Image.Image, name: str, data: bytes = b"", upright: bool
     """Decode a Pillow image; `data` are the bytes of its file, if there is one."""
     width, height = image.size
     check_size(width, height, name)
+    _check_density(width * height, len(data), name)
     try:
         picture = _decode(image, name, data, upright)
     except InputError:
@@ -71,6 +75,15 @@ def check_size(width: int, height: int, name: str) -> None:
     """Raise `InputError` for more than `MAX_PIXELS` pixels."""
     if width * height > MAX_PIXELS:
         raise _too_large(name, f"{width} x {height}, ")
+
+
+def _check_density(pixels: int, size: int, name: str) -> None:
+    """Refuse a few bytes that state many pixels, before these are decoded."""
+    if size and pixels > max(_FEW_PIXELS, _PIXELS_A_BYTE * size):
+        raise InputError(
+            f"{name} states {pixels / 1e6:.0f} megapixels in {size / 1e3:,.0f} KB, which no "
+            "photograph does; it is of one colour or damaged. Copy or download it again."
+        )
 
 
 def _decode(image: Image.Image, name: str, data: bytes, upright: bool) -> Picture:
@@ -119,6 +132,11 @@ def _open(data: bytes, name: str, kind: Kind) -> Image.Image:
     except Image.DecompressionBombError as error:
         raise _too_large(name, "far ") from error
     except READ_ERRORS as error:
+        if kind is PICTURE:
+            raise InputError(
+                f"{name} is damaged or cut short, or of a variant that is not read; copy or "
+                "download it again, or save it as JPEG or PNG."
+            ) from error
         raise InputError(
             f"{name} is not a picture that can be read; give a JPEG, PNG, TIFF or WebP file."
         ) from error

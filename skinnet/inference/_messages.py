@@ -1,6 +1,7 @@
 """What the command prints: results to standard output, all else to standard error."""
 
 import os
+import re
 import signal
 import sys
 import threading
@@ -9,6 +10,9 @@ from contextlib import contextmanager
 
 from skinnet.errors import _explain_fault
 from skinnet.files._partial import take_removed
+
+_CONTROL = re.compile("[\0-\x1f\x7f-\x9f\u200e\u200f\u202a-\u202e\u2066-\u2069]")
+"""Control characters of C0 and C1, and those that turn the direction of text."""
 
 
 def open_missing_streams() -> None:
@@ -52,14 +56,19 @@ def print_line(text: str) -> None:
     print(_escape(text, sys.stdout.encoding), flush=True)
 
 
-def note(sentence: str) -> None:
+def note(sentence: str, program: str = "skinnet") -> None:
     """Print what the user should know."""
-    print(_escape(f"skinnet: {sentence}", sys.stderr.encoding), file=sys.stderr, flush=True)
+    log(f"{program}: {sentence}")
 
 
-def report(error: Exception) -> None:
+def log(line: str) -> None:
+    """Print a line to standard error."""
+    print(_escape(line, sys.stderr.encoding), file=sys.stderr, flush=True)
+
+
+def report(error: Exception, program: str = "skinnet") -> None:
     """Print an error as a sentence."""
-    note(describe(error))
+    note(describe(error), program)
 
 
 def note_removed() -> None:
@@ -78,6 +87,10 @@ def describe(error: Exception) -> str:
 
 
 def _escape(text: str, encoding: str | None) -> str:
-    """Replace characters that an encoding does not have by escapes."""
+    """Replace characters that an encoding does not have, and that control a terminal, by escapes.
+
+    The name of a file may hold them, and change what a terminal shows and does.
+    """
     encoding = encoding or "utf-8"
+    text = _CONTROL.sub(lambda found: ascii(found[0])[1:-1], text)
     return text.encode(encoding, "backslashreplace").decode(encoding)

@@ -16,6 +16,7 @@ from skinnet.appearance.measures import Measures, measure
 from skinnet.appearance.stack import SubjectStack
 from skinnet.errors import InputError, _check_count
 from skinnet.images._result_names import OUTPUT
+from skinnet.inference._messages import print_line
 from skinnet.pipeline._model_inputs import find_maps, read_mask, read_shape, stack_subjects
 from skinnet.pipeline._model_results import (
     JOINT,
@@ -108,7 +109,7 @@ def run(config: Namespace) -> int:
         measures.append(joint_measures)
     write_models(output, hybrid, linear, joint, measures, make_renderer(files), source)
     shutil.rmtree(stack.folder)
-    print(f"{output}: {len(files)} subjects; {describe_measures(measures)}", flush=True)
+    print_line(f"{output}: {len(files)} subjects; {describe_measures(measures)}")
     return 0
 
 

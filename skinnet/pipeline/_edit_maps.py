@@ -16,6 +16,7 @@ from skinnet.errors import InputError
 from skinnet.images._png_file import write_png
 from skinnet.images._result_names import choose_stem
 from skinnet.images.photograph import read_photo
+from skinnet.inference._messages import print_line
 from skinnet.inference._tiles import draw_grid, draw_picture
 from skinnet.mesh.mesh_file import read_mesh, write_mesh
 from skinnet.pipeline._maps_writer import (
@@ -101,7 +102,7 @@ def run(config: Namespace) -> int:
         log(f"There is no {mesh} to render on; the albedo alone is written.")
     panel = draw_grid([tile for row in rows for tile in row], len(rows[0]))
     write_png(add_end(stem, "_panel.png"), panel, text)
-    print(f"{config.maps}: {stem}_maps.npz, _albedo.png, _panel.png", flush=True)
+    print_line(f"{config.maps}: {stem}_maps.npz, _albedo.png, _panel.png")
     return 0
 
 

@@ -10,6 +10,7 @@ from jsonargparse import ArgumentParser, Namespace
 from skinnet.errors import InputError
 from skinnet.images._png_file import write_png
 from skinnet.images._result_names import lock_folder
+from skinnet.inference._messages import print_line
 from skinnet.mesh.mesh import Mesh
 from skinnet.mesh.mesh_file import write_mesh
 from skinnet.pipeline._fit_archive import load_fit, save_fit
@@ -70,7 +71,7 @@ def run(config: Namespace) -> int:
 
     def process(path: Path) -> None:
         fitted = fit_scan(path, model, options, config.output, config.fit)
-        print(describe_fit(fitted), flush=True)
+        print_line(describe_fit(fitted))
 
     return process_scans(config.scan, options, config.output, process)
 

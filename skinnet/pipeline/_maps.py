@@ -10,6 +10,7 @@ from jaxtyping import Float
 from jsonargparse import ArgumentParser, Namespace
 
 from skinnet.appearance.skin_texture import SkinTexture
+from skinnet.inference._messages import print_line
 from skinnet.pipeline._fit_shape import FittedScan, fit_scan
 from skinnet.pipeline._maps_writer import MAPS_ENDS, write_maps
 from skinnet.pipeline._output import add_end
@@ -98,11 +99,10 @@ def write_scan_maps(
             "something white in the texture (--colour.white)."
         )
     mean = ", ".join(f"{name} {summary[name]['median']:.3g}" for name in ("melanin", "hemoglobin"))
-    print(
+    print_line(
         f"{path}: median {mean}; {off_manifold:.1%} of the texels have a colour that skin cannot "
         "have; "
         f"{stem}_maps.npz, _panel.png, _face.obj",
-        flush=True,
     )
 
 

@@ -2,7 +2,6 @@
 
 import hashlib
 import json
-import sys
 from collections.abc import Mapping
 from dataclasses import asdict, is_dataclass
 from pathlib import Path
@@ -10,11 +9,12 @@ from typing import Any
 
 from skinnet.files import write_text
 from skinnet.files._reading import read_file
+from skinnet.inference import _messages
 
 
 def log(text: str) -> None:
     """Print a line of progress to standard error; standard output holds results alone."""
-    print(text, file=sys.stderr, flush=True)
+    _messages.log(text)
 
 
 def compute_fingerprint(*parts: object) -> str:

@@ -11,6 +11,7 @@ from skinnet.appearance.maps_file import save_maps
 from skinnet.appearance.skin_texture import SkinTexture
 from skinnet.errors import InputError, _check_count
 from skinnet.images._png_file import write_png
+from skinnet.inference._messages import print_line
 from skinnet.inference._tiles import draw_grid, draw_picture
 from skinnet.pipeline._build_model import MODEL_FOLDER
 from skinnet.pipeline._maps_writer import draw_pigments, show_albedo
@@ -58,10 +59,9 @@ def run(config: Namespace) -> int:
         save_maps(output / f"{stem}{MAPS_END}", texture, model.colour, origin)
         write_png(output / f"{stem}_albedo.png", albedo, text)
     write_png(output / "samples.png", _draw_samples(textures, albedos), text)
-    print(
+    print_line(
         f"{output}: {config.count} faces, {model.measure_clamping(betas):.2%} of their texels "
         "clipped to a fraction in [0, 1]; sample_*_maps.npz, sample_*_albedo.png, samples.png",
-        flush=True,
     )
     return 0
 

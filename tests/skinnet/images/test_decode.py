@@ -153,3 +153,21 @@ def test_large_arrays_are_refused(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(_decode, "MAX_PIXELS", 8)
     with pytest.raises(InputError, match="3 x 3, more pixels than the limit of 8"):
         read_photo(np.zeros((3, 3), np.uint8))
+
+
+@pytest.mark.parametrize("kind", ["WEBP", "AVIF", "JPEG2000", "GIF", "BMP", "PNG", "JPEG"])
+def test_a_picture_that_is_cut_short_is_called_so(tmp_path: Path, kind: str) -> None:
+    whole = io.BytesIO()
+    pixels = np.random.default_rng(0).integers(0, 256, (40, 40, 3), np.uint8)
+    Image.fromarray(pixels).save(whole, kind)
+    for share in (0.05, 0.3, 0.5):
+        content = whole.getvalue()[: max(int(share * len(whole.getvalue())), 30)]
+        with pytest.raises(InputError, match="damaged or cut short"):
+            read_picture(io.BytesIO(content), "a.picture")
+
+
+def test_a_few_bytes_that_state_many_pixels_are_not_decoded() -> None:
+    flat = io.BytesIO()
+    Image.new("RGB", (3000, 2000), (200, 150, 120)).save(flat, "WEBP", lossless=True)
+    with pytest.raises(InputError, match="states 6 megapixels in 0 KB"):
+        read_picture(io.BytesIO(flat.getvalue()), "flat.webp")

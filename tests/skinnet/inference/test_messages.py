@@ -10,6 +10,8 @@ import numpy as np
 import pytest
 from PIL import Image
 
+from skinnet.cli import main
+
 posix = pytest.mark.skipif(os.name != "posix", reason="File numbers are those of POSIX.")
 
 
@@ -65,3 +67,15 @@ def test_an_endless_standard_input_is_refused() -> None:
     with open("/dev/zero", "rb") as endless:
         done = subprocess.run(arguments, stdin=endless, capture_output=True, timeout=120)
     assert done.returncode == 2 and b"standard input is larger than the limit" in done.stderr
+
+
+@pytest.mark.parametrize("verb", ["predict", "edit", "maps", "compare"])
+def test_names_do_not_control_the_terminal(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str], verb: str
+) -> None:
+    name = tmp_path / "a\x1b[31m\u202egnp\n.obj"
+    name.write_bytes(b"none")
+    more = {"compare": [str(name)], "edit": ["--melanin", "2"]}
+    assert main([verb, str(name), *more.get(verb, [])]) == 2
+    said = capsys.readouterr().err
+    assert r"a\x1b[31m\u202egnp\n.obj" in said and "\x1b" not in said and "\u202e" not in said
