@@ -380,12 +380,66 @@ def test_odd_paths_are_sentences(
 
 
 @pytest.mark.parametrize(
-    "arguments", [[], ["predict"], ["paint", "a.jpg"], ["edit", "a.jpg", "--melanin", "dark"]]
+    ("arguments", "said"),
+    [
+        (["predict"], "predict needs input: photographs"),
+        (["predit", "a.jpg"], "There is no verb predit. Did you mean predict?"),
+        (["paint", "a.jpg"], "There is no verb paint. ("),
+        (["predict", "a.jpg", "--jsn"], "predict has no flag --jsn. Did you mean --json?"),
+        (["predict", "a.jpg", "--rec"], "predict has no flag --rec. Did you mean --recursive?"),
+        (["predict", "a.jpg", "--white_colour"], "Did you mean --white-colour?"),
+        (["predict", "a.jpg", "--region", "fce"], "--region is face or skin; got 'fce'. Did you"),
+        (["predict", "a.jpg", "-x"], "predict does not know what '-x' is for."),
+        (["predict", "a.jpg", "-o"], "-o/--output needs a value"),
+        (["predict", "a.jpg", "--json=3"], "--json takes no value; got '3'."),
+        (["predict", "a.jpg", "-q", "-v"], "-v/--verbose and -q/--quiet exclude each other"),
+        (["edit", "a.jpg", "--melanin", "dark"], "--melanin is a number; got 'dark'."),
+        (["web", "--port", "dark"], "--port is a whole number; got 'dark'."),
+        (["help", "predit"], "There is no verb predit. Did you mean predict?"),
+        (["--jsn", "predict"], "skinnet has no flag --jsn before the verb."),
+    ],
 )
-def test_usage_errors_exit_with_2(arguments: list[str]) -> None:
-    with pytest.raises(SystemExit) as stop:
-        main(arguments)
-    assert stop.value.code == 2
+def test_a_mistake_is_answered_with_a_sentence(
+    arguments: list[str], said: str, capsys: pytest.CaptureFixture[str]
+) -> None:
+    assert main(arguments) == 2
+    out, err = capsys.readouterr()
+    assert out == "" and len(err.splitlines()) == 1
+    assert err.startswith(f"skinnet: {said}") or (said.startswith("Did you") and said in err)
+
+
+@pytest.mark.parametrize("arguments", [[], ["help"], ["--help"], ["-q", "-h"]])
+def test_the_command_alone_lists_its_verbs(
+    arguments: list[str], capsys: pytest.CaptureFixture[str]
+) -> None:
+    assert main(arguments) == 0
+    out = capsys.readouterr().out
+    assert all(f"\n  {verb} " in out for verb in [*cli.PHOTO_VERBS, *cli.PIPELINE])
+
+
+def test_quiet_and_verbose_may_stand_before_the_verb(
+    predict: Predict, photo: Path, model_file: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    arguments = ["predict", str(photo), str(photo), "--model", str(model_file)]
+    assert main(["-q", *arguments]) == 0
+    out, err = capsys.readouterr()
+    assert len(out.splitlines()) == 1 and err == ""
+    assert main([*arguments, "-v"]) == 0
+    assert "predict took" in capsys.readouterr().err
+
+
+@pytest.mark.parametrize("flags", [[], ["-v"]])
+def test_a_fault_is_a_sentence(
+    flags: list[str], monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    def fail(options: object) -> bool:
+        raise LookupError("nothing there")
+
+    monkeypatch.setattr("skinnet.inference._photo_verbs.predict", fail)
+    assert main([*flags, "predict", "a.jpg"]) == 70
+    err = capsys.readouterr().err
+    assert "An unexpected error, LookupError: nothing there." in err.splitlines()[-1]
+    assert ("Traceback" in err) is bool(flags)
 
 
 def test_an_interrupt_is_quiet(
@@ -394,7 +448,7 @@ def test_an_interrupt_is_quiet(
     def interrupt(options: object) -> int:
         raise KeyboardInterrupt
 
-    monkeypatch.setattr(cli, "_predict", interrupt)
+    monkeypatch.setattr("skinnet.inference._photo_verbs.predict", interrupt)
     assert main(["predict", "a.jpg"]) == 130
     assert capsys.readouterr() == ("", "")
 

@@ -1,0 +1,96 @@
+"""Flags of each verb of photographs."""
+
+import argparse
+from pathlib import Path
+
+from skinnet.inference._command.shared_arguments import (
+    add_common,
+    add_folder,
+    add_inputs,
+    add_json,
+    add_known,
+    add_model,
+    add_references,
+)
+
+
+def add_predict(verb: argparse.ArgumentParser) -> None:
+    """Add the flags of `skinnet predict`."""
+    add_inputs(verb)
+    add_json(verb, "each summary")
+    verb.add_argument(
+        "--csv",
+        type=Path,
+        metavar="FILE",
+        help="append one row for each face, and one with the reason for each file that is not read",
+    )
+    verb.add_argument(
+        "--no-detail",
+        dest="detail",
+        action="store_false",
+        help="do not add the photograph's detail to the network's maps; faster",
+    )
+    add_common(verb)
+
+
+def add_edit(verb: argparse.ArgumentParser) -> None:
+    """Add the flags of `skinnet edit`."""
+    verb.add_argument("input", help="a photograph, or - for standard input")
+    verb.add_argument(
+        "-o",
+        "--output",
+        type=Path,
+        metavar="FILE",
+        help="its suffix chooses the format; by default INPUT_edited in the format of the input, "
+        "with a number if that is another file. JPEG changes every pixel a little",
+    )
+    for pigment in ("melanin", "hemoglobin"):
+        verb.add_argument(
+            f"--{pigment}",
+            type=float,
+            default=1.0,
+            metavar="X",
+            help=f"factor of {pigment}, from 0 to 10; 1 by default",
+        )
+    add_common(verb)
+
+
+def add_person(verb: argparse.ArgumentParser) -> None:
+    """Add the flags of `skinnet person`."""
+    add_inputs(verb)
+    add_json(verb)
+    add_common(verb)
+
+
+def add_compare(verb: argparse.ArgumentParser) -> None:
+    """Add the flags of `skinnet compare`."""
+    verb.add_argument("before", help="a photograph, or - for standard input")
+    verb.add_argument("after", help="another one of the same face, from the same side")
+    add_folder(verb, "the folder of the first photograph")
+    add_json(verb)
+    add_model(verb)
+    add_known(verb, "the session of both")
+
+
+def add_capture(verb: argparse.ArgumentParser) -> None:
+    """Add the flags of `skinnet capture`."""
+    verb.add_argument("input", help="a picture of a colour chart, or of something white or grey")
+    verb.add_argument(
+        "-o",
+        "--output",
+        type=Path,
+        metavar="FILE",
+        required=True,
+        help="the profile, a .yaml file, for --capture of predict and edit",
+    )
+    add_references(verb)
+
+
+def add_web(verb: argparse.ArgumentParser) -> None:
+    """Add the flags of `skinnet web`."""
+    verb.add_argument(
+        "--port", type=int, default=8765, metavar="N", help="8765 by default; 0 for any free one"
+    )
+    verb.add_argument(
+        "--no-open", dest="open", action="store_false", help="do not open the browser"
+    )
