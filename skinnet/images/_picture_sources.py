@@ -44,8 +44,7 @@ a picture that has been read."""
 
 
 def is_array(source: object) -> bool:
-    """Whether a source is an array or a tensor; arrays of other libraries are seen by NumPy's
-    protocol `__array__`."""
+    """Whether a source is an array, a tensor, or has NumPy's protocol `__array__`."""
     if isinstance(source, np.ndarray | TensorLike):
         return True
     return hasattr(source, "__array__") and not isinstance(source, Image.Image | np.generic)

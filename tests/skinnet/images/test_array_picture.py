@@ -126,5 +126,5 @@ def test_files_that_give_no_bytes_are_refused(tmp_path: Path) -> None:
     with pytest.raises(InputError, match="to its end before; call its seek"):
         read_picture(finished)
     finished.close()
-    with pytest.raises(InputError, match="cannot be read .*closed file"):
+    with pytest.raises(InputError, match=r"cannot be read .*closed file"):
         read_picture(finished)
