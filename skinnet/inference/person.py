@@ -17,6 +17,7 @@ from skinnet.inference._agreement import (
     note_sessions,
     number_sessions,
 )
+from skinnet.inference._decomposition.summary import round_all
 from skinnet.inference._fused_pigment import FusedPigment, FusedRegion, make_pigment
 from skinnet.inference._fusion import SHARED, Fusion
 from skinnet.inference._index_summary import SkinIndices
@@ -29,7 +30,7 @@ from skinnet.inference._uncertainty import (
     find_interval,
     summarise_mean,
 )
-from skinnet.inference.decomposition import Decomposition, _round_all
+from skinnet.inference.decomposition import Decomposition
 from skinnet.inference.indices import _find_indices
 
 
@@ -277,7 +278,7 @@ def _summarise(shot: PersonShot) -> dict[str, Any]:
         for name, value, log_sd, top in rows
     }
     return {
-        "pigments": _round_all(pigments),
+        "pigments": round_all(pigments),
         "capture_known": list(shot.capture_known),
         "notes": list(shot.notes),
     }

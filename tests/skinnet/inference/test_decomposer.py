@@ -195,11 +195,11 @@ def test_files_are_opened_at_the_first_photograph_and_once(
 ) -> None:
     opened = []
 
-    def counted(path: Path, kind: str, threads: int | None) -> object:
+    def counted(path: Path, kind: str, *options: object) -> object:
         opened.append(kind)
-        return open_model(path, kind, threads)
+        return open_model(path, kind, *options)
 
-    monkeypatch.setattr("skinnet.inference.decomposer.open_model", counted)
+    monkeypatch.setattr("skinnet.inference._subject_reader.open_model", counted)
     decomposer = Decomposer(model_file)
     assert opened == []
     decomposer(astronaut)
@@ -208,7 +208,7 @@ def test_files_are_opened_at_the_first_photograph_and_once(
 
 
 def test_threads_are_counted_from_one(model_file: Path) -> None:
-    with pytest.raises(InputError, match="threads is at least 1, or None for all cores; got 0"):
+    with pytest.raises(InputError, match="threads is a whole number of at least 1, .* got 0"):
         Decomposer(model_file, threads=0)
 
 
