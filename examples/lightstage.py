@@ -163,7 +163,7 @@ def study(folder: Path, people: int, texels: int) -> None:
     files = [maps / f"{scan.stem}_maps.npz" for scan in scans]
     for effect in ("false", "true"):
         output = folder / ("model" if effect == "false" else "model_effect")
-        run("build-model", *files, "-o", output, f"--model.effect={effect}", "--joint=true")
+        run("build-model", *files, "-o", output, f"--appearance.effect={effect}", "--joint=true")
 
 
 if __name__ == "__main__":

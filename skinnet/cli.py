@@ -12,7 +12,7 @@ from skinnet.errors import InputError
 from skinnet.inference._command.nearest import suggest
 from skinnet.inference._command.overview import describe_verbs, describe_versions
 from skinnet.inference._command.photo_verbs import PHOTO_VERBS
-from skinnet.inference._command.verb_parser import VerbParser, read_verbosity
+from skinnet.inference._command.verb_parser import VerbParser, read_verbosity, take_verbosity
 from skinnet.inference._messages import (
     Verbosity,
     explain,
@@ -22,15 +22,8 @@ from skinnet.inference._messages import (
     report,
     set_verbosity,
 )
-
-PIPELINE = {
-    "fit-shape": "fit a shape model to scans",
-    "maps": "make melanin and hemoglobin maps from scans: fit, warp, calibrate, invert",
-    "build-model": "build a hybrid, a linear and a joint model from the maps of many people",
-    "sample": "sample random faces from a model",
-    "edit-maps": "scale, add to or paint on maps, and render the face again",
-}
-"""Verbs of the classic pipeline, which take their settings from YAML (`skinnet.pipeline`)."""
+from skinnet.pipeline._flag_table import check_flags, make_parser
+from skinnet.pipeline._verbs import PIPELINE_VERBS
 
 _OK, _BROKEN_PIPE, _BAD_INPUT, _FAULT, _INTERRUPTED = 0, 1, 2, 70, 130
 """Exit codes; the second is for an output pipe whose reader has closed it."""
@@ -79,8 +72,8 @@ def _run(arguments: list[str]) -> int:
         return _OK
     if verb == "help":
         verb, rest = (rest[0], ["--help"]) if rest else ("", [])
-    if not verb or {"-h", "--help"} & {*flags}:
-        print_line(describe_verbs(PIPELINE))
+    if not verb:
+        print_line(describe_verbs({name: verb.summary for name, verb in PIPELINE_VERBS.items()}))
         return _OK
     started = time.perf_counter()
     code = _run_verb(verb, [*flags, *rest])
@@ -115,15 +108,18 @@ def _count_leading_flags(arguments: list[str]) -> int:
 
 
 def _run_verb(verb: str, arguments: list[str]) -> int:
-    if verb in PIPELINE:
+    if verb in PIPELINE_VERBS:
         return _run_pipeline(verb, arguments)
     if verb not in PHOTO_VERBS:
         raise InputError(
-            f"There is no verb {verb}.{suggest(verb, [*PHOTO_VERBS, *PIPELINE])} "
+            f"There is no verb {verb}.{suggest(verb, [*PHOTO_VERBS, *PIPELINE_VERBS])} "
             "(skinnet --help lists the verbs)"
         )
     each = PHOTO_VERBS[verb]
     parser = VerbParser(f"skinnet {verb}", each.description, each.examples, each.add)
+    if _wants_help(arguments):
+        parser.print_help()
+        return _OK
     options = parser.parse(arguments)
     set_verbosity(read_verbosity(options))
     module, _, name = each.run.partition(":")
@@ -131,11 +127,22 @@ def _run_verb(verb: str, arguments: list[str]) -> int:
     return _BAD_INPUT if run(options) is False else _OK
 
 
+def _wants_help(arguments: list[str]) -> bool:
+    end = arguments.index("--") if "--" in arguments else len(arguments)
+    return bool({"-h", "--help"} & {*arguments[:end]})
+
+
 def _run_pipeline(verb: str, arguments: list[str]) -> int:
+    parser = make_parser(verb)
+    if _wants_help(arguments):
+        parser.print_help()
+        return _OK
+    level, arguments = take_verbosity(check_flags(parser, verb, arguments))
+    set_verbosity(level)
     try:
         from skinnet.pipeline._command import run_verb
 
-        return run_verb(verb, arguments, PIPELINE[verb])
+        return run_verb(verb, arguments)
     except ModuleNotFoundError as error:
         if (error.name or "").partition(".")[0] == "skinnet":
             raise

@@ -28,7 +28,7 @@ DOWNLOADED = "ICT-FaceKit"
 QUICK = {
     "fit-shape": FAST,
     "maps": (*FAST, "--warp.size=48"),
-    "build-model": ("--model.samples=3",),
+    "build-model": ("--appearance.samples=3",),
     "edit-maps": ("--relight.size=64",),
 }
 """Options that make the slower commands quick."""
@@ -206,8 +206,7 @@ def test_every_benchmark_is_listed() -> None:
 
 @pytest.mark.parametrize("verb", ["predict", "edit", "person", "compare", "capture"])
 def test_every_flag_is_explained(verb: str, capsys: pytest.CaptureFixture[str]) -> None:
-    with pytest.raises(SystemExit):
-        main([verb, "--help"])
+    assert main([verb, "--help"]) == 0
     text = (ROOT / "docs" / "commands.md").read_text(encoding="utf-8")
     usage = capsys.readouterr().out.partition("\n\n")[0]
     for flag in re.findall(r"--[a-z][a-z-]+", usage):

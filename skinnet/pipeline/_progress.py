@@ -1,19 +1,13 @@
-"""The log, and records of finished steps, which are not repeated."""
+"""Records of finished steps, which are not repeated."""
 
 import hashlib
 import json
-import sys
 from collections.abc import Mapping
 from dataclasses import asdict, is_dataclass
 from pathlib import Path
 from typing import Any
 
 from skinnet.files import write_text
-
-
-def log(text: str) -> None:
-    """Print a line of progress to standard error; standard output holds results alone."""
-    print(text, file=sys.stderr, flush=True)
 
 
 def compute_fingerprint(*parts: object) -> str:

@@ -7,12 +7,13 @@ from typing import NoReturn
 from jsonargparse import ArgumentParser
 
 from skinnet.errors import InputError
+from skinnet.pipeline._sentences import write_sentence
 
 
 class SentenceParser(ArgumentParser):
-    """A parser that reports an error in one sentence, without listing all options.
+    """A parser that reports an error in one sentence, without listing all flags.
 
-    `help_command` lists the options; by default it is the parser's program with `--help`.
+    `help_command` lists the flags; by default it is the parser's program with `--help`.
     `renamed` maps keys and class names of earlier versions to their present names. An error about
     an old name then gives the new one.
 
@@ -46,6 +47,7 @@ class SentenceParser(ArgumentParser):
             # A key stands after a quote, dashes or a colon, perhaps as the end of a longer path.
             if re.search(rf"""(?:['"]|--|: )(?:\w+\.)*{re.escape(old)}(?=[.'"=\s]|$)""", message):
                 raise InputError(f"'{old}' is now called '{new}'; use the new name.") from ex
-        sentence = " ".join(message.split())
+        keys = [each.dest for each in self._actions]
+        sentence = write_sentence(" ".join(message.split()), self.prog, keys)
         help_command = self.help_command or f"{self.prog} --help"
-        raise InputError(f"{sentence} ({help_command} lists the options)") from ex
+        raise InputError(f"{sentence} ({help_command} lists the flags)") from ex

@@ -16,11 +16,11 @@ from skinnet.calibration._exposure import fit_exposure
 from skinnet.calibration.colour_transform import calibrate
 from skinnet.errors import InputError
 from skinnet.images.srgb import srgb_to_linear
+from skinnet.inference._messages import log
 from skinnet.physics.inversion import SkinInverse
 from skinnet.physics.optics import SkinOptics
 from skinnet.physics.reflectance import SkinReflectance
 from skinnet.physics.sources import load_spectrum_to_srgb
-from skinnet.pipeline._progress import log
 
 _WAYS = ("exposure", "common", "full", "none")
 _NODES = (256, 256)

@@ -414,7 +414,7 @@ def test_the_command_alone_lists_its_verbs(
 ) -> None:
     assert main(arguments) == 0
     out = capsys.readouterr().out
-    assert all(f"\n  {verb} " in out for verb in [*cli.PHOTO_VERBS, *cli.PIPELINE])
+    assert all(f"\n  {verb} " in out for verb in [*cli.PHOTO_VERBS, *cli.PIPELINE_VERBS])
 
 
 def test_quiet_and_verbose_may_stand_before_the_verb(

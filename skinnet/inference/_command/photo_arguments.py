@@ -81,8 +81,9 @@ def add_capture(verb: argparse.ArgumentParser) -> None:
         type=Path,
         metavar="FILE",
         required=True,
-        help="the profile, a .yaml file, for --capture of predict and edit",
+        help="the profile, a .yaml file, for --capture of the other verbs",
     )
+    add_json(verb, "the profile")
     add_references(verb)
 
 

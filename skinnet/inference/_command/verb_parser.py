@@ -19,6 +19,13 @@ _MISSING = re.compile(r"the following arguments are required: (.+)")
 _OTHER = re.compile(r"argument (.+?): (.+)")
 _KINDS = {"int": "a whole number", "float": "a number"}
 
+_LEVELS = {
+    "-q": Verbosity.QUIET,
+    "--quiet": Verbosity.QUIET,
+    "-v": Verbosity.VERBOSE,
+    "--verbose": Verbosity.VERBOSE,
+}
+
 
 class _HelpFormatter(argparse.RawDescriptionHelpFormatter):
     """Wraps the description, and leaves the lines of the examples as they are."""
@@ -186,6 +193,26 @@ def read_verbosity(options: argparse.Namespace) -> Verbosity:
     if options.quiet:
         return Verbosity.QUIET
     return Verbosity.VERBOSE if options.verbose else Verbosity.USUAL
+
+
+def take_verbosity(arguments: Sequence[str]) -> tuple[Verbosity, list[str]]:
+    """Take the flags for how much is said out of arguments that another parser reads.
+
+    Args:
+        arguments: What follows a verb.
+
+    Returns:
+        How much is to be said, and the other arguments.
+
+    Raises:
+        InputError: Both flags are given.
+    """
+    end = arguments.index("--") if "--" in arguments else len(arguments)
+    levels = {_LEVELS[each] for each in arguments[:end] if each in _LEVELS}
+    if len(levels) > 1:
+        raise InputError("-v/--verbose and -q/--quiet exclude each other; give one of them.")
+    others = [each for each in arguments[:end] if each not in _LEVELS]
+    return next(iter(levels), Verbosity.USUAL), [*others, *arguments[end:]]
 
 
 def _format_examples(examples: Sequence[tuple[str, str]]) -> str | None:
