@@ -23,7 +23,7 @@ from skinnet.inference._messages import note, print_line, report
 from skinnet.inference._own_results import Source
 from skinnet.inference._person_panel import draw_person
 from skinnet.inference._person_shot import PersonShot, describe_shot
-from skinnet.inference._photo_verbs import _make_decomposer, _read, is_quiet
+from skinnet.inference._photo_verbs import _make_decomposer, _read
 from skinnet.inference._tiles import TILE
 from skinnet.inference._told_capture import ToldCapture
 from skinnet.inference._uncertainty import describe_mean
@@ -81,8 +81,7 @@ def _read_shots(
             note(f"{one.source.name} has the same content as {first.source.name}; it counts once.")
         return int(options.region == "face")
 
-    quiet = options.json or is_quiet(options)
-    totals = run_over(found, read_shot, lambda _, error: report(error), quiet)
+    totals = run_over(found, read_shot, lambda _, error: report(error), options.json)
     return list(read.values()), totals
 
 

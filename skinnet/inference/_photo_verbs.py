@@ -55,18 +55,13 @@ def predict(options: argparse.Namespace) -> bool:
         found,
         lambda picture: _predict_one(decomposer, picture, options, told, table),
         lambda name, error: _report_failure(table, name, error),
-        quiet=options.json or is_quiet(options),
+        quiet=options.json,
     )
     for sentence in (*found.notes, *table.notes):
         note(sentence)
     if not is_one_file(found, options.input):
         note(describe_totals(totals, found, "read", _describe_place(found, options.output)))
     return not totals.failures
-
-
-def is_quiet(options: argparse.Namespace) -> bool:
-    """Whether nothing but results and faults is to be printed."""
-    return bool(getattr(options, "quiet", False))
 
 
 def _describe_place(found: Walk, output: Path | None) -> str:

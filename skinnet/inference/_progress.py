@@ -6,7 +6,7 @@ from collections.abc import Callable, Iterator
 from contextlib import contextmanager, redirect_stderr, redirect_stdout
 from typing import TYPE_CHECKING, Any, TextIO, cast
 
-from skinnet.inference._messages import note
+from skinnet.inference._messages import Verbosity, get_verbosity, note
 
 if TYPE_CHECKING:
     from tqdm import tqdm
@@ -26,12 +26,12 @@ def show_progress(total: int, quiet: bool = False) -> Iterator[Advance]:
 
     Args:
         total: Number of files.
-        quiet: Whether to show nothing.
+        quiet: Whether to show nothing, as with --quiet.
 
     Yields:
         A function to call after each file.
     """
-    if quiet or total < 2:
+    if quiet or total < 2 or get_verbosity() < Verbosity.USUAL:
         yield lambda failed: None
     elif _is_terminal(sys.stderr) and sys.stdout is not None:
         with _draw_bar(total) as advance:
