@@ -26,9 +26,10 @@ from skinnet.inference._face_choice import check_choice
 from skinnet.inference._input_run import NotWrittenError, describe_totals, is_one_file, run_over
 from skinnet.inference._messages import note, print_line, report
 from skinnet.inference._own_results import Source
-from skinnet.inference._photo_verbs import _make_decomposer, _read, is_quiet
+from skinnet.inference._photo_verbs import _make_decomposer, _read
+from skinnet.inference._pigment_edit import check_factors
 from skinnet.inference._told_capture import ToldCapture
-from skinnet.inference.decomposer import Decomposer, _check_factors
+from skinnet.inference.decomposer import Decomposer
 
 _MASK = Kind("a mask of the edit", "masks of the edit", "give photographs")
 
@@ -145,8 +146,7 @@ def edit(options: argparse.Namespace) -> bool:
     decomposer.load()
     told = ToldCapture.from_options(options, decomposer, len(found.pictures))
     run = _EditRun(decomposer, options, told, place, mask)
-    quiet = options.json or is_quiet(options)
-    totals = run_over(found, run.edit_one, lambda _, error: report(error), quiet)
+    totals = run_over(found, run.edit_one, lambda _, error: report(error), options.json)
     for sentence in found.notes:
         note(sentence)
     if not is_one_file(found, options.input):
@@ -157,7 +157,7 @@ def edit(options: argparse.Namespace) -> bool:
 def _check(options: argparse.Namespace) -> None:
     """Refuse what can be refused before any photograph is read."""
     check_choice(options.faces)
-    _check_factors(melanin=options.melanin, hemoglobin=options.hemoglobin)
+    check_factors(melanin=options.melanin, hemoglobin=options.hemoglobin)
     if options.melanin == options.hemoglobin == 1:
         # A mere copy would replace an earlier edit of the photograph.
         raise InputError(
