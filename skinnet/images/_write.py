@@ -117,6 +117,11 @@ def _list_needs(picture: Picture) -> frozenset[str]:
     return frozenset(need for need, there in needs.items() if there)
 
 
+def has_format(suffix: str) -> bool:
+    """Whether a suffix is one of a format that is written."""
+    return any(suffix.lower() in each.suffixes for each in _FORMATS.values())
+
+
 def find_format(path: Path) -> Format:
     """Find the format that a file's suffix asks for.
 

@@ -45,8 +45,8 @@ def read_edit_mask(path: Path) -> NDArray[Any]:
     return values
 
 
-def check_edit_mask(values: ArrayLike, shape: tuple[int, ...]) -> NDArray[Any]:
-    """Check a mask for a photograph of a shape [H, W, ...], turned upright.
+def check_edit_mask(values: ArrayLike, shape: tuple[int, ...], name: str) -> NDArray[Any]:
+    """Check a mask for a photograph of a name and a shape [H, W, ...], turned upright.
 
     Returns:
         The mask as an array.
@@ -61,7 +61,7 @@ def check_edit_mask(values: ArrayLike, shape: tuple[int, ...]) -> NDArray[Any]:
             "mask.astype(bool) if all of what is not 0 is to be edited."
         )
     if mask.shape != shape[:2]:
-        raise InputError(_describe_size(mask.shape, shape))
+        raise InputError(_describe_size(mask.shape, shape, name))
     outside = mask[~((mask >= 0) & (mask <= 1))] if mask.dtype.kind == "f" else mask[:0]
     if outside.size:
         raise InputError(f"A mask of floats lies in [0, 1]; got {outside.flat[0]:g}.")
@@ -91,11 +91,11 @@ def _refuse_labels(values: NDArray[Any], name: str) -> None:
         )
 
 
-def _describe_size(size: tuple[int, ...], shape: tuple[int, ...]) -> str:
-    found = " x ".join(str(side) for side in size[::-1])
-    said = f"The mask has {found} pixels, and the photograph {shape[1]} x {shape[0]}"
-    if size == (shape[1], shape[0]):
-        return f"{said}, once its EXIF orientation has turned it upright; turn the mask too."
+def _describe_size(size: tuple[int, ...], shape: tuple[int, ...], name: str) -> str:
     if len(size) != 2:
         return f"A mask is [H, W]; got shape {list(size)}."
+    found = " x ".join(str(side) for side in size[::-1])
+    said = f"The mask has {found} pixels, and {name} {shape[1]} x {shape[0]}"
+    if size == (shape[1], shape[0]):
+        return f"{said}, once its EXIF orientation has turned it upright; turn the mask too."
     return f"{said}; give a mask of the photograph's size."

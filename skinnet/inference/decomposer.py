@@ -304,11 +304,11 @@ class Decomposer:
     ) -> Edited:
         """Edit a picture by the factors of `edit_picture`, and say what has changed."""
         _check_factors(**factors)
-        share = None if mask is None else check_edit_mask(mask, picture.pixels.shape)
+        name = name or picture.name
+        share = None if mask is None else check_edit_mask(mask, picture.pixels.shape, name)
         applied = apply_profile(picture, capture, is_read=False)
         picture, capture = applied.picture, applied.capture
         known, capture_notes = join_captures(picture, capture, self.encoder)
-        name = name or picture.name
         photo, colour = picture.srgb, picture.as_colour()
         edited = replace(colour, pixels=colour.pixels.copy())
         notes = [*colour.notes, *capture_notes]

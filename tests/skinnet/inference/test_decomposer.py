@@ -164,7 +164,7 @@ def test_a_mask_weighs_an_edit(
 
 
 def test_a_mask_of_another_size_is_refused(decomposer: Decomposer, astronaut: np.ndarray) -> None:
-    with pytest.raises(InputError, match="The mask has 3 x 2 pixels, and the photograph 512 x 512"):
+    with pytest.raises(InputError, match="The mask has 3 x 2 pixels, and the image 512 x 512"):
         decomposer.edit(astronaut, melanin=2.0, mask=np.ones((2, 3)))
 
 

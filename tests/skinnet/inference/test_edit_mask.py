@@ -91,7 +91,7 @@ def test_a_mask_that_is_no_picture_is_named(tmp_path: Path) -> None:
     ("mask", "words"),
     [
         (np.ones((3, 4, 1)), r"A mask is \[H, W\]; got shape \[3, 4, 1\]"),
-        (np.ones((6, 8)), "The mask has 8 x 6 pixels, and the photograph 4 x 3; give a mask of"),
+        (np.ones((6, 8)), "The mask has 8 x 6 pixels, and a.jpg 4 x 3; give a mask of"),
         (np.ones((4, 3)), "turned it upright; turn the mask too"),
         (np.ones((3, 4), int), "got int64"),
         (np.full((3, 4), 1.5), r"lies in \[0, 1\]; got 1.5"),
@@ -101,7 +101,7 @@ def test_a_mask_that_is_no_picture_is_named(tmp_path: Path) -> None:
 )
 def test_arrays_that_are_no_masks_are_refused(mask: np.ndarray, words: str) -> None:
     with pytest.raises(InputError, match=words):
-        check_edit_mask(mask, (3, 4, 3))
+        check_edit_mask(mask, (3, 4, 3), "a.jpg")
 
 
 @pytest.mark.parametrize(
@@ -115,5 +115,5 @@ def test_arrays_that_are_no_masks_are_refused(mask: np.ndarray, words: str) -> N
     ],
 )
 def test_shares_are_of_white(mask: object) -> None:
-    assert to_share(check_edit_mask(mask, (1, 2, 3))).tolist() == [[1, 0]]
+    assert to_share(check_edit_mask(mask, (1, 2, 3), "a.jpg")).tolist() == [[1, 0]]
     assert to_share(np.array([51], np.uint8)).tolist() == pytest.approx([0.2])
