@@ -4,7 +4,6 @@ import argparse
 import hashlib
 import json
 import sys
-from collections import Counter
 from collections.abc import Sequence
 from io import BytesIO
 from pathlib import Path
@@ -12,7 +11,7 @@ from typing import Any
 
 import numpy as np
 
-from skinnet.errors import InputError, NoFaceError
+from skinnet.errors import InputError
 from skinnet.images._mark import EDITED, Mark, read_mark
 from skinnet.images._result_names import OUTPUT, compute_digest, lock_folder
 from skinnet.images._walk import STDIN, Found, Walk, check_mark, find_one, walk
@@ -22,6 +21,13 @@ from skinnet.images.photograph import read_picture
 from skinnet.images.picture import Picture
 from skinnet.inference._face_choice import check_choice
 from skinnet.inference._face_rows import FaceTable
+from skinnet.inference._input_run import (
+    NotWrittenError,
+    describe_totals,
+    is_one_file,
+    name_input,
+    run_over,
+)
 from skinnet.inference._messages import describe, note, print_line, report
 from skinnet.inference._own_results import Source, choose_edit_target, choose_result_stem
 from skinnet.inference._told_capture import ToldCapture
@@ -36,14 +42,6 @@ from skinnet.inference.results import (
     _write_all,
 )
 
-_READ, _FACELESS, _WRITTEN_NOT, _READ_NOT = (
-    "read",
-    "without a face",
-    "could not be written",
-    "could not be read",
-)
-"""What becomes of an input, as the count at the end of a run says it."""
-
 
 def predict(options: argparse.Namespace) -> bool:
     """Decompose every input; report bad inputs and continue. Returns whether none was bad."""
@@ -53,21 +51,30 @@ def predict(options: argparse.Namespace) -> bool:
     found = walk(options.input, options.recursive)
     told = ToldCapture.from_options(options, decomposer, len(found.pictures))
     table = FaceTable(options.csv)
-    counts: Counter[str] = Counter()
-    for picture in found.pictures:
-        try:
-            counts[_predict_one(decomposer, picture, options, told, table)] += 1
-        except BrokenPipeError:
-            raise
-        except (InputError, OSError) as error:
-            counts[_READ_NOT] += 1
-            _report_failure(table, _name(picture), error)
+    totals = run_over(
+        found,
+        lambda picture: _predict_one(decomposer, picture, options, told, table),
+        lambda name, error: _report_failure(table, name, error),
+        quiet=options.json or is_quiet(options),
+    )
     for sentence in (*found.notes, *table.notes):
         note(sentence)
-    single = len(found.pictures) == 1 and found.pictures[0].path == options.input[0]
-    if not single or found.passed_over or len(options.input) > 1:
-        note(_describe_run(counts, found))
-    return counts.total() == counts[_READ]
+    if not is_one_file(found, options.input):
+        note(describe_totals(totals, found, "read", _describe_place(found, options.output)))
+    return not totals.failures
+
+
+def is_quiet(options: argparse.Namespace) -> bool:
+    """Whether nothing but results and faults is to be printed."""
+    return bool(getattr(options, "quiet", False))
+
+
+def _describe_place(found: Walk, output: Path | None) -> str:
+    """Where maps are written."""
+    folders = {Path(each.path).parent / OUTPUT for each in found.pictures if each.path != STDIN}
+    if output is None and len(folders) > 1:
+        return f"maps in {OUTPUT} beside the photographs"
+    return f"maps in {output or (folders or {Path(OUTPUT)}).pop()}"
 
 
 def _make_decomposer(options: argparse.Namespace) -> Decomposer:
@@ -83,30 +90,23 @@ def _predict_one(
     options: argparse.Namespace,
     told: ToldCapture,
     table: FaceTable,
-) -> str:
-    """Decompose a picture, and write its results. Returns under what it is counted."""
-    if found.error is not None:
-        raise found.error
+) -> int:
+    """Decompose a picture, and write its results. Returns the number of faces in them."""
     source, picture, notes = _read(found)
     known, told_notes = told.tell(picture)
-    try:
-        decompositions = decomposer(
-            picture,
-            name=source.name,
-            detail=options.detail,
-            faces=options.faces,
-            region=options.region,
-            capture=known,
-        )
-    except NoFaceError as error:
-        _report_failure(table, source.name, error)
-        return _FACELESS
+    decompositions = decomposer(
+        picture,
+        name=source.name,
+        detail=options.detail,
+        faces=options.faces,
+        region=options.region,
+        capture=known,
+    )
     try:
         table.add(_write(source, picture, decompositions, (*notes, *told_notes), options))
     except InputError as error:
-        _report_failure(table, source.name, error)
-        return _WRITTEN_NOT
-    return _READ
+        raise NotWrittenError(str(error)) from error
+    return sum(each.face_id is not None for each in decompositions)
 
 
 def _report_failure(table: FaceTable, name: str, error: Exception) -> None:
@@ -170,15 +170,6 @@ def _describe_skin(summary: dict[str, Any]) -> str:
     return f"{numbers} on skin, {summary['skin_share']:.0%} of the crop"
 
 
-def _describe_run(counts: Counter[str], found: Walk) -> str:
-    """How many pictures were read, passed over and not read, and the reasons."""
-    parts = [f"{counts[_READ]} {_READ}", f"{len(found.passed_over)} passed over"]
-    parts += [f"{counts[each]} {each}" for each in (_FACELESS, _WRITTEN_NOT) if counts[each]]
-    reasons = found.describe_passed_over()
-    passed_over = f" Passed over: {reasons}." if reasons else ""
-    return f"{', '.join(parts)}, {counts[_READ_NOT]} {_READ_NOT}.{passed_over}"
-
-
 def edit(options: argparse.Namespace) -> None:
     """Write one photograph with its pigments multiplied."""
     check_choice(options.faces)
@@ -227,12 +218,7 @@ def _read(found: Found) -> tuple[Source, Picture, tuple[str, ...]]:
         path = Path(found.path)
         picture = read_picture(path, found.path)
         return Source(found.path, path, compute_digest(path)), picture, found.notes
-    name, data = _name(found), b"" if sys.stdin is None else sys.stdin.buffer.read()
+    name, data = name_input(found), b"" if sys.stdin is None else sys.stdin.buffer.read()
     notes = check_mark(read_mark(BytesIO(data)), name)
     picture = read_picture(BytesIO(data), name)
     return Source(name, None, hashlib.sha256(data).hexdigest()), picture, notes
-
-
-def _name(found: Found) -> str:
-    """The name of a picture in messages."""
-    return "standard input" if found.path == STDIN else found.path

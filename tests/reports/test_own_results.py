@@ -33,7 +33,7 @@ def test_a_folder_that_is_written_into_is_read_as_before(
         assert code == 0
         assert names(tmp_path) == FILES
         assert read_melanin(tmp_path) == {"a.json": 0.2}
-    assert "1 read, 13 passed over, 0 could not be read" in err
+    assert "1 photograph, 1 face read, 0 not read, 13 passed over" in err
     assert "13 results of skinnet" in err
 
 
@@ -74,7 +74,7 @@ def test_a_star_names_the_folder_of_results_too(
         inputs = names(tmp_path) if expanded else ["*"]
         code, _, err = run("predict", *inputs)
         assert code == 0, err
-    assert "1 read, 13 passed over, 0 could not be read" in err
+    assert "1 photograph, 1 face read, 0 not read, 13 passed over" in err
     assert read_melanin(tmp_path / "skinmaps") == {"a.json": 0.2}
 
 
@@ -105,7 +105,7 @@ def test_results_of_earlier_versions_are_known_too(run: Run, tmp_path: Path) -> 
     for path in (tmp_path / "out").iterdir():
         shutil.copy(path, tmp_path)
     code, _, err = run("predict", tmp_path, "-o", tmp_path / "new")
-    assert code == 0 and "1 read, 13 passed over" in err
+    assert code == 0 and "1 photograph, 1 face read, 0 not read, 13 passed over" in err
     assert read_melanin(tmp_path / "new") == {"a.json": 0.2}
 
 
@@ -117,7 +117,7 @@ def test_photographs_with_such_names_are_photographs(run: Run, tmp_path: Path, n
     save(tmp_path / name, pnginfo=info)
     (tmp_path / "a.json").write_text('{"file": "a.png", "labels": []}')
     code, _, err = run("predict", tmp_path, "-o", tmp_path / "out")
-    assert code == 0 and "1 read, 1 passed over" in err
+    assert code == 0 and "1 photograph, 1 face read, 0 not read, 1 passed over" in err
     assert read_melanin(tmp_path / "out") == {f"{name[:-4]}.json": 0.2}
 
 
@@ -131,7 +131,7 @@ def test_an_edited_photograph_is_read_only_where_it_alone_is_named(
     out = tmp_path / "out"
     for inputs in ([tmp_path], [tmp_path / f"*.{end}"], [photo, edited]):
         code, _, err = run("predict", *inputs, "-o", out)
-        assert code == 0 and "1 read, 1 passed over" in err
+        assert code == 0 and "1 photograph, 1 face read, 0 not read, 1 passed over" in err
         assert f"1 result of skinnet (b_edited.{end})" in err
         assert list(read_melanin(out)) == ["a.json"]
     code, _, err = run("predict", edited, "-o", out)
@@ -157,7 +157,11 @@ def test_edits_in_every_format_are_known(run: Run, tmp_path: Path, format_: str)
     (edited,) = (path for path in tmp_path.iterdir() if path != photo)
     renamed = edited.rename(tmp_path / "b")
     code, _, err = run("predict", tmp_path, "-o", tmp_path / "out")
-    assert code == 0 and "1 read, 1 passed over" in err and "1 result of skinnet (b)" in err
+    assert (
+        code == 0
+        and "1 photograph, 1 face read, 0 not read, 1 passed over" in err
+        and "1 result of skinnet (b)" in err
+    )
     assert list(read_melanin(tmp_path / "out")) == ["a.json"]
     assert run("edit", photo, "-o", edited)[0] == run("edit", photo, "-o", edited)[0] == 0
     assert renamed.read_bytes() == edited.read_bytes()

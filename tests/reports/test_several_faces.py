@@ -104,7 +104,7 @@ def test_results_of_faces_are_no_photographs(run: Run, tmp_path: Path) -> None:
     for _ in range(2):
         code, _, err = run("predict", tmp_path, "--faces", "all", "-o", tmp_path)
         assert code == 0
-    assert f"1 read, {13 * PEOPLE} passed over, 0 could not be read" in err
+    assert f"1 photograph, {PEOPLE} faces read, 0 not read, {13 * PEOPLE} passed over" in err
     code, _, err = run("predict", tmp_path / f"{FACES[0]}_mask.png", "-o", tmp_path)
     assert code == 2 and "is a result of skinnet" in err
 

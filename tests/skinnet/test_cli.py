@@ -143,10 +143,9 @@ def test_a_folder_goes_on_after_a_bad_file(
     empty, truncated, count = err.splitlines()
     assert empty.startswith(f"skinnet: {folder / '0.jpg'} is empty")
     assert truncated.startswith(f"skinnet: {folder / 'b.png'} is damaged or cut short")
-    assert count == (
-        "skinnet: 1 read, 1 passed over, 2 could not be read. "
-        "Passed over: 1 other file (notes.txt)."
-    )
+    assert count.startswith("skinnet: 1 photograph, 1 face read, 2 not read, 1 passed over, ")
+    where = folder / "skinmaps"
+    assert count.endswith(f": maps in {where}. Passed over: 1 other file (notes.txt).")
 
 
 def test_a_list_goes_on_after_a_bad_file(
@@ -157,7 +156,7 @@ def test_a_list_goes_on_after_a_bad_file(
     missing, empty, count = capsys.readouterr().err.splitlines()
     assert missing == f"skinnet: There is no file {tmp_path / 'no.jpg'}; check the path."
     assert empty.startswith(f"skinnet: The folder {tmp_path / 'empty'} holds no photographs; they")
-    assert count == "skinnet: 1 read, 0 passed over, 2 could not be read."
+    assert count.startswith("skinnet: 1 photograph, 1 face read, 2 not read, ")
     assert names(tmp_path / "skinmaps") == FILES
 
 
@@ -176,7 +175,7 @@ def test_faces_that_cannot_be_read_do_not_stop_a_run(
     assert summary["file"] == str(photo) and summary["id"] == summary["faces_found"] == 1
     assert f"The face in {tmp_path / 'small.png'} is 2" in err and "and 24 are needed" in err
     assert f"No face was found in {tmp_path / 'suit.png'}" in err
-    assert "1 read, 0 passed over, 1 without a face, 1 could not be read." in err
+    assert "1 photograph, 1 face read, 2 not read (1 could not be read, 1 without a face), " in err
 
 
 def test_without_a_face_the_option_is_named(
