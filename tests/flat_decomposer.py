@@ -15,6 +15,8 @@ from skinnet.errors import NoFaceError
 from skinnet.images import Box
 from skinnet.images._png_file import write_png
 from skinnet.images.picture import Picture
+from skinnet.inference._edited import Edited, EditedFace
+from skinnet.inference._editing import ColourMeans
 from skinnet.inference._uncertainty import Uncertainty
 from skinnet.inference.decomposer import Decomposer
 from skinnet.inference.decomposition import Decomposition
@@ -68,11 +70,13 @@ class FlatDecomposer(Decomposer):
         )
         return [replace(one, face_id=number + 1) for number in range(count)]
 
-    def edit_picture(self, picture: Picture, *_: object, **__: object) -> Picture:
+    def _edit(self, picture: Picture, *_: object, **__: object) -> Edited:
         """The picture with a red that is one level brighter or darker."""
         pixels = picture.as_colour().pixels.copy()
         pixels[..., 0] ^= 1
-        return replace(picture.as_colour(), pixels=pixels)
+        means = ColourMeans(float(pixels[..., 0].size), np.zeros(3), np.ones(3))
+        face = EditedFace(1, Box(0, 0, pixels.shape[1], pixels.shape[0]), means)
+        return Edited(replace(picture.as_colour(), pixels=pixels), (face,), 1)
 
 
 @pytest.fixture

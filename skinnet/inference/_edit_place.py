@@ -18,7 +18,7 @@ from skinnet.inference.results import _make_folder
 STANDARD_OUTPUT = "standard output"
 
 
-class Kind(Enum):
+class Output(Enum):
     """What an output is."""
 
     BESIDE = "the photograph's folder"
@@ -36,7 +36,7 @@ class EditPlace(NamedTuple):
         suffix: Suffix of the format that is asked for; "" for that of each photograph.
     """
 
-    kind: Kind
+    kind: Output
     path: Path | None = None
     suffix: str = ""
 
@@ -59,23 +59,27 @@ class EditPlace(NamedTuple):
         if suffix:
             find_format(Path(f"the edit{suffix}"))
         if output is None:
-            return cls(Kind.BESIDE, None, suffix)
+            return cls(Output.BESIDE, None, suffix)
         if output == STDIN:
             _check_pipe(len(found.pictures))
-            return cls(Kind.PIPE, None, suffix)
+            return cls(Output.PIPE, None, suffix)
         path = Path(output)
         if path.is_dir() or output.endswith(("/", os.sep)):
-            return cls(Kind.FOLDER, path, suffix)
+            return cls(Output.FOLDER, path, suffix)
         if not _is_one(found, inputs, path):
             _refuse_file(path, len(found.pictures))
-            return cls(Kind.FOLDER, path, suffix)
+            return cls(Output.FOLDER, path, suffix)
         _check_format(path, suffix)
-        return cls(Kind.FILE, path)
+        return cls(Output.FILE, path)
+
+    def describe(self) -> str:
+        """Where the edits are, for the end of a run."""
+        return f"edits in {self.path}" if self.kind is Output.FOLDER else ""
 
     def choose_suffix(self, picture: Picture, source: Source) -> tuple[str, tuple[str, ...]]:
         """Choose the suffix of an edit, with a note if its format is not the photograph's own."""
         own = "" if source.path is None else source.path.suffix
-        if self.kind is Kind.FILE and self.path is not None:
+        if self.kind is Output.FILE and self.path is not None:
             return self.path.suffix, ()
         if not self.suffix:
             return choose_suffix(picture, own)
@@ -91,7 +95,7 @@ class EditPlace(NamedTuple):
             InputError: The file is the photograph itself or another file, or the folder cannot be
                 made.
         """
-        if self.kind is Kind.FILE:
+        if self.kind is Output.FILE:
             return choose_edit_target(source, self.path, suffix), ()
         folder = source.folder if self.path is None else _make_folder(self.path)
         with lock_folder(folder):
