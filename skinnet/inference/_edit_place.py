@@ -8,7 +8,6 @@ from typing import NamedTuple
 
 from skinnet.errors import InputError
 from skinnet.images._mark import EDITED
-from skinnet.images._result_names import lock_folder
 from skinnet.images._walk import STDIN, Walk
 from skinnet.images._write import choose_suffix, find_format, has_format
 from skinnet.images.picture import Picture
@@ -88,20 +87,28 @@ class EditPlace(NamedTuple):
         )
         return (own if same else self.suffix), ()
 
-    def choose_target(self, source: Source, suffix: str) -> tuple[Path, tuple[str, ...]]:
-        """Choose the file of an edit, with a note if its name has a number.
+    def make_folder(self, source: Source) -> Path:
+        """The folder of an edit, which is made if it is one that the user has named.
 
         Raises:
-            InputError: The file is the photograph itself or another file, or the folder cannot be
-                made.
+            InputError: It cannot be made.
         """
-        if self.kind is Output.FILE:
-            return choose_edit_target(source, self.path, suffix), ()
-        folder = source.folder if self.path is None else _make_folder(self.path)
-        with lock_folder(folder):
-            target = choose_edit_target(source, None, suffix, folder)
+        if self.path is None:
+            return source.folder
+        return self.path.parent if self.kind is Output.FILE else _make_folder(self.path)
+
+    def choose_target(
+        self, source: Source, suffix: str, folder: Path
+    ) -> tuple[Path, tuple[str, ...]]:
+        """Choose the file of an edit in its folder, with a note if its name has a number.
+
+        Raises:
+            InputError: The file that is asked for is the photograph itself or another file.
+        """
+        output = self.path if self.kind is Output.FILE else None
+        target = choose_edit_target(source, output, suffix, folder)
         usual = f"{source.stem}_{EDITED}{suffix}"
-        if target.name == usual:
+        if output is not None or target.name == usual:
             return target, ()
         return target, (
             f"{folder / usual} is another file; the edit of {source.name} is numbered: "

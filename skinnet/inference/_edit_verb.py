@@ -16,6 +16,7 @@ from skinnet._version import __version__
 from skinnet.errors import InputError
 from skinnet.images._kind import Kind
 from skinnet.images._mark import EDITED, Mark
+from skinnet.images._result_names import lock_folder
 from skinnet.images._walk import Found, PassedOver, Walk, walk
 from skinnet.images._write import check_quality, find_format, write_picture
 from skinnet.inference._edit_mask import read_edit_mask
@@ -29,7 +30,7 @@ from skinnet.inference._photo_verbs import _make_decomposer, _read, is_quiet
 from skinnet.inference._told_capture import ToldCapture
 from skinnet.inference.decomposer import Decomposer, _check_factors
 
-_MASK = Kind("the mask of the edit", "masks of the edit", "give photographs")
+_MASK = Kind("a mask of the edit", "masks of the edit", "give photographs")
 
 
 @dataclass(frozen=True)
@@ -84,8 +85,11 @@ class _EditRun:
         """Write an edit. Returns its file, None for standard output, and notes."""
         mark, quality = Mark("edit", EDITED, source.digest), self.options.quality
         if self.place.kind is not Output.PIPE:
-            target, numbered = self.place.choose_target(source, suffix)
-            return target, (*numbered, *write_picture(target, edited.picture, mark, quality))
+            place = self.place.make_folder(source)
+            with lock_folder(place):
+                target, numbered = self.place.choose_target(source, suffix, place)
+                losses = write_picture(target, edited.picture, mark, quality)
+            return target, (*numbered, *losses)
         with TemporaryDirectory() as folder:
             path = Path(folder) / f"{source.stem}_{EDITED}{suffix}"
             notes = write_picture(path, edited.picture, mark, quality, STANDARD_OUTPUT)
