@@ -1,4 +1,4 @@
-"""The verbs `predict` and `edit`, with options that are parsed."""
+"""The verb `predict`, with options that are parsed, and what other verbs share with it."""
 
 import argparse
 import hashlib
@@ -9,13 +9,10 @@ from io import BytesIO
 from pathlib import Path
 from typing import Any
 
-import numpy as np
-
 from skinnet.errors import InputError
-from skinnet.images._mark import EDITED, Mark, read_mark
+from skinnet.images._mark import read_mark
 from skinnet.images._result_names import OUTPUT, compute_digest, lock_folder
-from skinnet.images._walk import STDIN, Found, Walk, check_mark, find_one, walk
-from skinnet.images._write import choose_suffix, find_format, write_picture
+from skinnet.images._walk import STDIN, Found, Walk, check_mark, walk
 from skinnet.images.faces._face_models import open_ahead
 from skinnet.images.photograph import read_picture
 from skinnet.images.picture import Picture
@@ -29,7 +26,7 @@ from skinnet.inference._input_run import (
     run_over,
 )
 from skinnet.inference._messages import describe, note, print_line, report
-from skinnet.inference._own_results import Source, choose_edit_target, choose_result_stem
+from skinnet.inference._own_results import Source, choose_result_stem
 from skinnet.inference._told_capture import ToldCapture
 from skinnet.inference._uncertainty import describe_mean
 from skinnet.inference.decomposer import Decomposer
@@ -163,48 +160,6 @@ def _describe_skin(summary: dict[str, Any]) -> str:
         f"{name} {describe_mean(each['mean'], each['interval'])}" for name, each in pigments.items()
     )
     return f"{numbers} on skin, {summary['skin_share']:.0%} of the crop"
-
-
-def edit(options: argparse.Namespace) -> None:
-    """Write one photograph with its pigments multiplied."""
-    check_choice(options.faces)
-    _refuse_no_change(options)
-    if options.output is not None:
-        find_format(options.output)
-    decomposer = _make_decomposer(options)
-    told = ToldCapture.from_options(options, decomposer, 1)
-    source, picture, notes = _read(find_one(options.input))
-    suffix, changes = choose_suffix(picture, "" if source.path is None else source.path.suffix)
-    target = choose_edit_target(source, options.output, suffix)
-    known, told_notes = told.tell(picture)
-    edited = decomposer.edit_picture(
-        picture,
-        options.melanin,
-        options.hemoglobin,
-        name=source.name,
-        faces=options.faces,
-        region=options.region,
-        capture=known,
-    )
-    if np.array_equal(edited.pixels, picture.as_colour().pixels):
-        raise InputError(
-            f"No pixel of {source.name} changes, and nothing is written: no skin that can be "
-            "edited was found in it, or the factors are too near 1."
-        )
-    losses = write_picture(target, edited, Mark("edit", EDITED, source.digest))
-    changes = () if options.output else changes
-    for sentence in (*notes, *told_notes, *edited.notes, *changes, *losses):
-        note(sentence)
-    print_line(f"{source.name}: {target}")
-
-
-def _refuse_no_change(options: argparse.Namespace) -> None:
-    """Refuse factors of 1: a mere copy would replace an earlier edit of the photograph."""
-    if options.melanin == options.hemoglobin == 1:
-        raise InputError(
-            "Nothing is edited with factors of 1; give --melanin X or --hemoglobin X, such as "
-            "--melanin 1.5."
-        )
 
 
 def _read(found: Found) -> tuple[Source, Picture, tuple[str, ...]]:

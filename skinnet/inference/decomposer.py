@@ -26,7 +26,9 @@ from skinnet.inference._capture_inputs import (
 )
 from skinnet.inference._capture_names import name_camera, name_light
 from skinnet.inference._doubts import list_doubts
-from skinnet.inference._editing import ColourChange, apply_change, compute_change
+from skinnet.inference._edit_mask import check_edit_mask
+from skinnet.inference._edited import Edited, EditedFace
+from skinnet.inference._editing import ColourChange, ColourMeans, apply_change, compute_change
 from skinnet.inference._face_choice import FaceChoice
 from skinnet.inference._metering import brighten, find_gain, scale_back, shift_exposure
 from skinnet.inference._onnx_pair import get_decoder_path, refuse_other_export
@@ -192,6 +194,7 @@ class Decomposer:
         faces: FaceChoice = "largest",
         region: Region = "face",
         capture: CaptureLike | None = None,
+        mask: NDArray[Any] | None = None,
     ) -> NDArray[np.uint8]:
         """Multiply the pigments of a photograph.
 
@@ -208,6 +211,8 @@ class Decomposer:
             faces: "all", "largest", or how many of the largest faces to edit.
             region: "face", or "skin" to edit whatever skin the photograph shows.
             capture: What is known of the light and the camera; None: nothing.
+            mask: What to edit of the skin, [H, W] as the upright photograph: bool, floats in
+                [0, 1], or uint8 or uint16 whose largest value is 1. Half of it is half of the edit.
 
         Returns:
             The edited photograph, uint8 sRGB [H, W, 3].
@@ -231,6 +236,7 @@ class Decomposer:
             faces=faces,
             region=region,
             capture=capture,
+            mask=mask,
         ).srgb
 
     def edit_picture(
@@ -244,6 +250,7 @@ class Decomposer:
         faces: FaceChoice = "largest",
         region: Region = "face",
         capture: CaptureLike | None = None,
+        mask: NDArray[Any] | None = None,
     ) -> Picture:
         """Multiply the pigments of a picture, which keeps its depth, colour space and alpha.
 
@@ -256,6 +263,8 @@ class Decomposer:
             faces: "all", "largest", or how many of the largest faces to edit.
             region: "face", or "skin" to edit whatever skin the photograph shows.
             capture: What is known of the light and the camera; None: nothing.
+            mask: What to edit of the skin, [H, W] as the upright photograph: bool, floats in
+                [0, 1], or uint8 or uint16 whose largest value is 1. Half of it is half of the edit.
 
         Returns:
             The edited picture. Pixels that are not skin keep their stored values.
@@ -275,18 +284,44 @@ class Decomposer:
             True
         """
         factors = {"melanin": melanin, "hemoglobin": hemoglobin}
+        return self._edit(
+            *(picture, factors, mask, name),
+            faces=faces,
+            region="skin" if whole_image else region,
+            capture=capture,
+        ).picture
+
+    def _edit(
+        self,
+        picture: Picture,
+        factors: Mapping[str, float],
+        mask: NDArray[Any] | None = None,
+        name: str | None = None,
+        *,
+        faces: FaceChoice = "largest",
+        region: Region = "face",
+        capture: CaptureLike | None = None,
+    ) -> Edited:
+        """Edit a picture by the factors of `edit_picture`, and say what has changed."""
         _check_factors(**factors)
+        name = name or picture.name
+        share = None if mask is None else check_edit_mask(mask, picture.pixels.shape, name)
         applied = apply_profile(picture, capture, is_read=False)
         picture, capture = applied.picture, applied.capture
         known, capture_notes = join_captures(picture, capture, self.encoder)
-        name = name or picture.name
         photo, colour = picture.srgb, picture.as_colour()
         edited = replace(colour, pixels=colour.pixels.copy())
         notes = [*colour.notes, *capture_notes]
-        for subject in find_subjects(photo, name, faces, "skin" if whole_image else region):
+        subjects = find_subjects(photo, name, faces, region)
+        changed = []
+        for subject in subjects:
             subject = self._doubt_white(applied, subject, name, known)
-            notes += self._edit_in_place(edited, photo, subject, factors, name, known)
-        return replace(edited, notes=tuple(dict.fromkeys(notes)))
+            means, doubts = self._edit_in_place(edited, photo, subject, factors, share, name, known)
+            changed.append(EditedFace(subject.face_id, subject.crop.box, means))
+            notes += doubts
+        edited = replace(edited, notes=tuple(dict.fromkeys(notes)))
+        all_faces = subjects[0].faces
+        return Edited(edited, tuple(changed), None if all_faces is None else len(all_faces))
 
     def _decompose(
         self, picture: Picture, subject: Subject, name: str, detail: bool, known: Inputs
@@ -343,10 +378,11 @@ class Decomposer:
         photo: NDArray[np.uint8],
         subject: Subject,
         factors: Mapping[str, float],
+        share: NDArray[Any] | None,
         name: str,
         known: Inputs,
-    ) -> tuple[str, ...]:
-        """Multiply the pigments of one subject in the pixels of `colour`. Returns notes."""
+    ) -> tuple[ColourMeans, tuple[str, ...]]:
+        """Edit one subject in the pixels of `colour`. Returns mean colours, and notes."""
         box = subject.crop.box
         encoder_outputs, skin = self._read(photo, subject, known)
         change = self._compute_change(encoder_outputs, factors)
@@ -354,11 +390,9 @@ class Decomposer:
         mask = skin if fade.min() == 1 else skin * resize(fade, box.width, box.height)
         alpha = None if colour.alpha is None else colour.alpha[box.slices]
         crop = replace(colour, pixels=colour.pixels[box.slices], alpha=alpha)
-        apply_change(crop, change, encoder_outputs["specular"][0], mask)
-        return (
-            *note_transparency(alpha, skin, name),
-            *subject.notes,
-        )
+        part = None if share is None else share[box.slices]
+        means = apply_change(crop, change, encoder_outputs["specular"][0], mask, part)
+        return means, (*note_transparency(alpha, skin, name), *subject.notes)
 
     def _read(
         self, photo: NDArray[np.uint8], subject: Subject, known: Inputs

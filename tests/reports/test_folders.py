@@ -344,8 +344,8 @@ def test_edit_takes_a_pattern_of_one_match(run: Run, tmp_path: Path) -> None:
     code, _, err = run("edit", tmp_path / "*.txt")
     assert code == 2
     save(tmp_path / "b.png")
-    code, _, err = run("edit", tmp_path / "*.png")
-    assert code == 2 and "matches 2 photographs; give one of them" in err
+    code, _, err = run("edit", tmp_path / "*.png", "-o", tmp_path / "out.png")
+    assert code == 2 and "out.png would be one picture, and 2 photographs are edited" in err
 
 
 @pytest.mark.parametrize("suffix", ["gif", "png", "webp", "tif"])

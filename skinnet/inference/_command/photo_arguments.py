@@ -10,8 +10,12 @@ from skinnet.inference._command.shared_arguments import (
     add_json,
     add_known,
     add_model,
+    add_photographs,
     add_references,
 )
+
+FORMATS = ("jpg", "png", "tif", "webp", "avif", "heic", "bmp", "jp2", "ppm")
+"""Formats that edits are written in, by their usual suffixes."""
 
 
 def add_predict(verb: argparse.ArgumentParser) -> None:
@@ -35,14 +39,14 @@ def add_predict(verb: argparse.ArgumentParser) -> None:
 
 def add_edit(verb: argparse.ArgumentParser) -> None:
     """Add the flags of `skinnet edit`."""
-    verb.add_argument("input", help="a photograph, or - for standard input")
+    add_photographs(verb)
     verb.add_argument(
         "-o",
         "--output",
-        type=Path,
-        metavar="FILE",
-        help="its suffix chooses the format; by default INPUT_edited in the format of the input, "
-        "with a number if that is another file. JPEG changes every pixel a little",
+        metavar="FILE|DIR",
+        help="a file for one photograph, whose suffix chooses the format; a folder for several, or "
+        "if it ends in /; - for standard output; by default INPUT_edited beside each photograph, "
+        "with a number if that is another file",
     )
     for pigment in ("melanin", "hemoglobin"):
         verb.add_argument(
@@ -52,7 +56,35 @@ def add_edit(verb: argparse.ArgumentParser) -> None:
             metavar="X",
             help=f"factor of {pigment}, from 0 to 10; 1 by default",
         )
+    verb.add_argument(
+        "--mask",
+        type=Path,
+        metavar="FILE",
+        help="a grey picture of the photograph's size: skin is edited fully where it is white, "
+        "partly where grey, and not where black",
+    )
+    verb.add_argument(
+        "--format",
+        type=_name_format,
+        choices=FORMATS,
+        metavar="FORMAT",
+        help=f"{', '.join(FORMATS[:-1])} or {FORMATS[-1]}; that of each photograph by default",
+    )
+    verb.add_argument(
+        "--quality",
+        type=int,
+        metavar="N",
+        help="of JPEG, WebP, AVIF and HEIC, from 1 to 100; by default that of a JPEG photograph, "
+        "WebP without loss stays so, and others have 95",
+    )
+    add_json(verb, "a summary of each edit")
     add_common(verb)
+
+
+def _name_format(word: str) -> str:
+    """A format by its usual suffix."""
+    name = word.lower().removeprefix(".")
+    return {"jpeg": "jpg", "tiff": "tif", "heif": "heic"}.get(name, name)
 
 
 def add_person(verb: argparse.ArgumentParser) -> None:

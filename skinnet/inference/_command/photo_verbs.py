@@ -48,12 +48,15 @@ PHOTO_VERBS = {
         ),
     ),
     "edit": PhotoVerb(
-        "multiply the pigments of a photograph: --melanin X, --hemoglobin X, or both",
+        "multiply the pigments of photographs: --melanin X, --hemoglobin X, or both",
         photo_arguments.add_edit,
-        f"{_INFERENCE}._photo_verbs:edit",
+        f"{_INFERENCE}._edit_verb:edit",
         (
             ("skinnet edit photo.jpg --melanin 1.5", "tanned, as photo_edited.jpg"),
             ("skinnet edit photo.jpg --hemoglobin 1.8 -o flushed.png", "flushed, as PNG"),
+            ("skinnet edit photographs -r --melanin 1.5 -o tanned/", "a folder and its subfolders"),
+            ("skinnet edit photo.jpg --melanin 2 --mask cheek.png", "where the mask is white"),
+            ("cat a.jpg | skinnet edit - --melanin 1.5 -o - > b.jpg", "from and to a pipe"),
         ),
     ),
     "person": PhotoVerb(

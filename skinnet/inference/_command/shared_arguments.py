@@ -4,8 +4,8 @@ import argparse
 from pathlib import Path
 
 
-def add_inputs(verb: argparse.ArgumentParser) -> None:
-    """Add the photographs that a verb reads, and the folder of its results."""
+def add_photographs(verb: argparse.ArgumentParser) -> None:
+    """Add the photographs that a verb reads."""
     verb.add_argument(
         "input",
         nargs="+",
@@ -14,6 +14,11 @@ def add_inputs(verb: argparse.ArgumentParser) -> None:
     verb.add_argument(
         "-r", "--recursive", action="store_true", help="search the subfolders of folders too"
     )
+
+
+def add_inputs(verb: argparse.ArgumentParser) -> None:
+    """Add the photographs that a verb reads, and the folder of its results."""
+    add_photographs(verb)
     add_folder(verb, "the photograph's folder")
 
 
