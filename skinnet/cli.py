@@ -31,7 +31,8 @@ _OK, _BROKEN_PIPE, _BAD_INPUT, _FAULT, _INTERRUPTED = 0, 1, 2, 70, 130
 
 _COMPLETION = "completion"
 _VERBS = {
-    **{name: verb.summary for name, verb in (*PHOTO_VERBS.items(), *PIPELINE_VERBS.items())},
+    **{name: verb.summary for name, verb in PHOTO_VERBS.items()},
+    **{name: verb.summary for name, verb in PIPELINE_VERBS.items()},
     _COMPLETION: completion.SUMMARY,
 }
 """All verbs, and what each does."""
