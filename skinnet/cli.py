@@ -9,6 +9,7 @@ from importlib import import_module
 from typing import Any
 
 from skinnet.errors import InputError
+from skinnet.inference._command import completion
 from skinnet.inference._command.nearest import suggest
 from skinnet.inference._command.overview import describe_verbs, describe_versions
 from skinnet.inference._command.photo_verbs import PHOTO_VERBS
@@ -27,6 +28,14 @@ from skinnet.pipeline._verbs import PIPELINE_VERBS
 
 _OK, _BROKEN_PIPE, _BAD_INPUT, _FAULT, _INTERRUPTED = 0, 1, 2, 70, 130
 """Exit codes; the second is for an output pipe whose reader has closed it."""
+
+_COMPLETION = "completion"
+_VERBS = {
+    **{name: verb.summary for name, verb in PHOTO_VERBS.items()},
+    **{name: verb.summary for name, verb in PIPELINE_VERBS.items()},
+    _COMPLETION: completion.SUMMARY,
+}
+"""All verbs, and what each does."""
 
 _LEADING = ("-h", "--help", "--version", "-q", "--quiet", "-v", "--verbose")
 """Flags that may stand before the verb."""
@@ -108,20 +117,42 @@ def _count_leading_flags(arguments: list[str]) -> int:
 
 
 def _run_verb(verb: str, arguments: list[str]) -> int:
-    if verb in PIPELINE_VERBS:
-        return _run_pipeline(verb, arguments)
-    if verb not in PHOTO_VERBS:
+    if verb not in _VERBS:
         raise InputError(
-            f"There is no verb {verb}.{suggest(verb, [*PHOTO_VERBS, *PIPELINE_VERBS])} "
-            "(skinnet --help lists the verbs)"
+            f"There is no verb {verb}.{suggest(verb, _VERBS)} (skinnet --help lists the verbs)"
         )
-    each = PHOTO_VERBS[verb]
-    parser = VerbParser(f"skinnet {verb}", each.description, each.examples, each.add)
+    parser = _make_parser(verb)
     if _wants_help(arguments):
         parser.print_help()
         return _OK
+    if verb in PIPELINE_VERBS:
+        return _run_pipeline(parser, verb, arguments)
     options = parser.parse(arguments)
     set_verbosity(read_verbosity(options))
+    if verb == _COMPLETION:
+        print_line(completion.write_script(options.shell, _make_parsers()))
+        return _OK
+    return _run_photo_verb(verb, options)
+
+
+def _make_parser(verb: str) -> VerbParser:
+    if verb in PIPELINE_VERBS:
+        return make_parser(verb)
+    if verb == _COMPLETION:
+        description = f"{completion.SUMMARY[0].upper()}{completion.SUMMARY[1:]}."
+        add, examples = completion.add_completion, completion.EXAMPLES
+        return VerbParser(f"skinnet {verb}", description, examples, add)
+    each = PHOTO_VERBS[verb]
+    return VerbParser(f"skinnet {verb}", each.description, each.examples, each.add)
+
+
+def _make_parsers() -> dict[str, tuple[str, VerbParser]]:
+    """For each verb what it does, and its parser."""
+    return {verb: (summary, _make_parser(verb)) for verb, summary in _VERBS.items()}
+
+
+def _run_photo_verb(verb: str, options: Any) -> int:
+    each = PHOTO_VERBS[verb]
     module, _, name = each.run.partition(":")
     run: Any = getattr(import_module(module), name)
     return _BAD_INPUT if run(options) is False else _OK
@@ -132,11 +163,7 @@ def _wants_help(arguments: list[str]) -> bool:
     return bool({"-h", "--help"} & {*arguments[:end]})
 
 
-def _run_pipeline(verb: str, arguments: list[str]) -> int:
-    parser = make_parser(verb)
-    if _wants_help(arguments):
-        parser.print_help()
-        return _OK
+def _run_pipeline(parser: VerbParser, verb: str, arguments: list[str]) -> int:
     level, arguments = take_verbosity(check_flags(parser, verb, arguments))
     set_verbosity(level)
     try:

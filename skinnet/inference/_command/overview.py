@@ -3,6 +3,7 @@
 from collections.abc import Mapping
 
 from skinnet._version import __version__
+from skinnet.inference._command import completion
 from skinnet.inference._command.photo_verbs import PHOTO_VERBS
 
 _TEXT = """\
@@ -15,6 +16,9 @@ verbs of photographs:
 
 verbs of scans:
 {scans}
+
+more verbs:
+{more}
 
 options:
   -h, --help     show this text, or after a verb the flags of the verb
@@ -30,6 +34,8 @@ examples:
   # the flags of a verb
   skinnet help predict"""
 
+_MORE = {"completion": completion.SUMMARY, "help VERB": "show the flags of a verb"}
+
 
 def describe_verbs(scans: Mapping[str, str]) -> str:
     """Describe the command and all its verbs.
@@ -41,7 +47,7 @@ def describe_verbs(scans: Mapping[str, str]) -> str:
         The help of `skinnet`.
     """
     photographs = {name: verb.summary for name, verb in PHOTO_VERBS.items()}
-    return _TEXT.format(photographs=_list(photographs), scans=_list(scans))
+    return _TEXT.format(photographs=_list(photographs), scans=_list(scans), more=_list(_MORE))
 
 
 def describe_versions() -> str:
