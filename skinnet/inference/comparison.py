@@ -3,12 +3,10 @@
 import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-from pathlib import Path
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
-from PIL import Image
 
 from skinnet._version import __version__
 from skinnet.errors import InputError, NoFaceError
@@ -30,6 +28,7 @@ from skinnet.inference._comparison.estimate import Estimate, Reading, estimate_c
 from skinnet.inference._comparison.face_warp import FaceWarp
 from skinnet.inference._comparison.picture import describe_change, draw_comparison
 from skinnet.inference._face_choice import note_others
+from skinnet.inference._image_list import ImageLike, name_image
 from skinnet.inference._uncertainty import LEVEL, PIGMENTS
 from skinnet.inference.decomposer import Decomposer
 from skinnet.inference.decomposition import Decomposition
@@ -39,8 +38,6 @@ _LEAST_CELLS, _LEAST_REGION = 30, 2
 
 _OTHER_PERSON = math.log(3)
 """Log change of melanin beyond which two photographs surely show two people."""
-
-ImageLike = str | Path | Image.Image | NDArray[Any] | Picture
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -180,7 +177,7 @@ def compare_photographs(
         True
     """
     decomposer = decomposer or Decomposer()
-    pictures = [one if isinstance(one, Picture) else read_picture(one) for one in (before, after)]
+    pictures = [read_picture(one) for one in (before, after)]
     names = names or _name(before, after)
     first = _read(decomposer, pictures[0], names[0], before_capture)
     second = _read(decomposer, pictures[1], names[1], after_capture)
@@ -313,8 +310,5 @@ def _list_notes(
 
 
 def _name(before: ImageLike, after: ImageLike) -> tuple[str, str]:
-    first, second = (
-        one.name if isinstance(one, Picture) else str(one) if isinstance(one, str | Path) else ""
-        for one in (before, after)
-    )
+    first, second = name_image(before), name_image(after)
     return first or "the first photograph", second or "the second photograph"

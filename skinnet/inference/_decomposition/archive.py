@@ -106,15 +106,12 @@ def _restore(file: ArrayFile, models: ModelPair | None) -> dict[str, Any]:
     shape = height, width
     box = restore_box(header["box"], shape)
     source = _restore_source(header["source"], file, shape, models)
-    info = header["output_info"].items()
     return {
         **{name: header[name] for name in _PLAIN},
         **{name: tuple(str(each) for each in header[name]) for name in _TUPLES},
         **_paste_maps(file, box, source.picture.srgb),
         "box": box,
-        "output_info": {
-            name: OutputInfo(unit, (*ends,), text) for name, (unit, ends, text) in info
-        },
+        "output_info": {name: _restore_info(*one) for name, one in header["output_info"].items()},
         "uncertainty": _restore_uncertainty(header["uncertainty"], file),
         "colour_space": _restore_space(header["colour_space"], "profile", file),
         "face_parts": restore_parts(header["face_parts"], file, shape),
@@ -136,6 +133,11 @@ def _paste_maps(file: ArrayFile, box: Box, photo: NDArray[np.uint8]) -> dict[str
     return pasted
 
 
+def _restore_info(unit: str, ends: list[float], description: str) -> OutputInfo:
+    low, high = ends
+    return OutputInfo(unit, (float(low), float(high)), description)
+
+
 def _restore_uncertainty(record: Any, file: ArrayFile) -> Uncertainty:
     melanin, hemoglobin = (
         file.read(f"log_sd_{name}", (None, None), "float32") for name in PIGMENTS
@@ -149,8 +151,8 @@ def _record_source(source: EditSource, arrays: dict[str, NDArray[Any]]) -> dict[
     arrays["photo"] = picture.pixels
     if picture.alpha is not None:
         arrays["alpha"] = picture.alpha
-    for name in (*EDITED_MAPS, *_CAPTURE) if source.outputs is not None else ():
-        arrays[f"edit_{name}"] = source.outputs[name]
+    outputs = source.outputs or {}
+    arrays |= {f"edit_{name}": values for name, values in outputs.items()}
     return {
         "name": picture.name,
         "alpha": picture.alpha is not None,
