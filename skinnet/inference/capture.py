@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from skinnet.errors import InputError
+from skinnet.images._arguments import check_number, check_text
 from skinnet.images._picture_sources import PictureSource
 from skinnet.images._raw.cameras import find_camera, list_close_names
 from skinnet.images._raw.raw_file import FORMAT as RAW
@@ -100,6 +101,9 @@ class Capture(NamedTuple):
             >>> capture.light, capture.temperature, len(capture.camera)
             ({'D': 1.0}, 5500.0, 6)
         """
+        for what, word in (("camera", camera), ("light", light)):
+            if word is not None:
+                check_text(f"The name of a {what}", word)
         found = find_camera(camera) if camera is not None else None
         if camera is not None and found is None:
             raise InputError(
@@ -208,6 +212,8 @@ class Capture(NamedTuple):
             (2, True)
         """
         picture = read_picture(image)
+        if not isinstance(place, Sequence | np.ndarray) or isinstance(place, str):
+            raise InputError(f"A place is (x, y) or (x0, y0, x1, y1) in pixels; got {place!r:.60}.")
         card = make_card(colour)
         return _find_balance(measure_colour(picture, tuple(place)), card)
 
@@ -255,6 +261,7 @@ def _find_balance(sample: Sample, card: Card) -> Capture:
 def _find_exposure(linear: NDArray[np.float64], reflectance: float | None) -> float | None:
     if reflectance is None:
         return None
+    reflectance = check_number("reflectance of a white reference", reflectance)
     if not 0.01 <= reflectance <= 1:
         raise InputError(
             f"reflectance of a white reference is a share in [0.01, 1]; got {reflectance:g}. A "

@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 
 from skinnet._version import __version__
 from skinnet.errors import InputError, NoFaceError
+from skinnet.images._arguments import check_text
 from skinnet.images.box import Box
 from skinnet.images.faces._outlines import Patch
 from skinnet.images.photograph import read_picture
@@ -176,9 +177,11 @@ def compare_photographs(
         >>> compared.face.hemoglobin.log > 0
         True
     """
-    decomposer = decomposer or Decomposer()
+    decomposer = Decomposer() if decomposer is None else decomposer
+    if not isinstance(decomposer, Decomposer):
+        raise InputError(f"decomposer is a Decomposer; got {decomposer!r:.60}.")
     pictures = [read_picture(one) for one in (before, after)]
-    names = names or _name(before, after)
+    names = _name(before, after) if names is None else _check_names(names)
     first = _read(decomposer, pictures[0], names[0], before_capture)
     second = _read(decomposer, pictures[1], names[1], after_capture)
     return _compare(decomposer, (pictures[0].srgb, pictures[1].srgb), (first, second), names)
@@ -307,6 +310,13 @@ def _list_notes(
             "were taken for other ones, and left out."
         )
     return tuple(dict.fromkeys(notes))
+
+
+def _check_names(names: Any) -> tuple[str, str]:
+    if not isinstance(names, Sequence) or isinstance(names, str) or len(names) != 2:
+        raise InputError(f"names are those of both photographs; got {names!r:.60}.")
+    first, second = (check_text("The name of a photograph", name) for name in names)
+    return first, second
 
 
 def _name(before: ImageLike, after: ImageLike) -> tuple[str, str]:

@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 from skinnet._version import __version__
 from skinnet.errors import InputError
-from skinnet.files import _explain_format
+from skinnet.images._arguments import check_path
 from skinnet.images._decode import MAX_PIXELS
 from skinnet.images.box import Box
 from skinnet.images.colour_space import ColourSpace
@@ -47,7 +47,7 @@ _TUPLES = ("notes", "capture_known")
 
 def write_archive(maps: SkinMaps, path: str | PathLike[str]) -> None:
     """Write a decomposition, as `Decomposition.save` describes."""
-    file = Path(path)
+    file = check_path("The file of a decomposition", path)
     if file.suffix.lower() != _SUFFIX:
         raise InputError(f"{file} must end in {_SUFFIX}, the kind of file that is written.")
     source, part = get_source(maps), maps.box.slices
@@ -76,7 +76,9 @@ def read_archive(path: str | PathLike[str], models: ModelPair | None) -> dict[st
     Raises:
         InputError: The file is missing, damaged, of another kind or of another format.
     """
-    file = Path(path)
+    file = check_path("The file of a decomposition", path)
+    if models is not None and not hasattr(type(models), "decoder"):
+        raise InputError(f"decomposer is a Decomposer; got {models!r:.60}.")
     with open_arrays(file) as archive:
         try:
             content = ArrayFile(archive)
@@ -92,9 +94,9 @@ def _check_format(path: Path, header: Mapping[str, Any]) -> None:
     if header["kind"] != _KIND:
         raise ValueError(f"it is of the kind {header['kind']!r:.40}")
     if header["format"] != _FORMAT:
-        advice = _explain_format(header["format"], _FORMAT, header.get("version"))
         raise InputError(
-            f"{path} has format {header['format']}, and this skinnet reads {_FORMAT}; {advice}."
+            f"{path} has format {header['format']}, and this skinnet reads {_FORMAT}; read it with "
+            f'the version that wrote it: pip install "skinnet=={header["version"]}".'
         )
 
 
