@@ -13,6 +13,7 @@ from PIL import Image
 
 from skinnet.errors import InputError
 from skinnet.images import _decode
+from skinnet.images._arguments import check_text
 from skinnet.images._array_picture import read_array
 from skinnet.images._picture_sources import PictureSource, is_array
 from skinnet.images.colour_space import ColourSpace
@@ -67,6 +68,8 @@ def read_picture(
         >>> read_picture(grey, colour_space="linear sRGB").srgb.tolist()
         [[[128, 128, 128]]]
     """
+    if name is not None:
+        check_text("The name of a picture", name)
     if is_array(source):
         return read_array(source, name or "The array", colour_space)
     if colour_space is not None:

@@ -8,6 +8,7 @@ from typing import Any
 from PIL import Image
 
 from skinnet.errors import InputError
+from skinnet.images._arguments import check_text
 from skinnet.images._picture_sources import PictureSource, is_array
 from skinnet.images.picture import Picture
 
@@ -67,7 +68,7 @@ def locate_errors(image: object, name: str, place: str) -> Iterator[None]:
 def name_image(image: object, name: str | None = None) -> str | None:
     """The name of an image in messages: that which is given, or its own; None if it has none."""
     if name is not None:
-        return name
+        return check_text("The name of an image", name)
     if isinstance(image, Picture):
         return image.name
     return str(image) if isinstance(image, str | PathLike) else None

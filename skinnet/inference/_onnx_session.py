@@ -2,7 +2,9 @@
 
 import re
 from pathlib import Path
+from typing import Any
 
+import numpy as np
 import onnxruntime
 from onnxruntime.capi import onnxruntime_pybind11_state as ort_errors
 
@@ -119,6 +121,22 @@ def _make_options(threads: int | None, providers: Providers) -> onnxruntime.Sess
     if threads is not None:
         options.intra_op_num_threads = threads
     return options
+
+
+def check_threads(threads: Any) -> int | None:
+    """Check a number of threads; None is all cores.
+
+    Raises:
+        InputError: It is no whole number, or less than 1.
+    """
+    if threads is None:
+        return None
+    is_whole = isinstance(threads, int | np.integer) and not isinstance(threads, bool)
+    if not is_whole or threads < 1:
+        raise InputError(
+            f"threads is a whole number of at least 1, or None for all cores; got {threads!r:.60}."
+        )
+    return int(threads)
 
 
 def _explain(message: str, header: Header) -> str:

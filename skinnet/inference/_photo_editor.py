@@ -21,7 +21,7 @@ class PhotoEditor(SubjectReader):
     """Edits photographs; `Decomposer` describes it."""
 
     @overload
-    def edit(
+    def edit(  # type: ignore[overload-overlap]  # a path is also an iterable of letters
         self,
         image: ImageLike,
         melanin: float = 1.0,
@@ -97,9 +97,10 @@ class PhotoEditor(SubjectReader):
         """
         factors = {"melanin": melanin, "hemoglobin": hemoglobin}
         region = "skin" if whole_image else region
-        if not is_many(image):
-            picture = read_picture(image, name)
-            name = name_image(image, name) or "the image"
+        given: Any = image
+        if not is_many(given):
+            picture = read_picture(given, name)
+            name = name_image(given, name) or "the image"
             return self._edit(
                 *(picture, factors, mask, name), faces=faces, region=region, capture=capture
             ).picture.srgb
@@ -109,7 +110,7 @@ class PhotoEditor(SubjectReader):
             )
         check_factors(**factors)
         edited = []
-        for one, called, place in name_all(image, name):
+        for one, called, place in name_all(given, name):
             with locate_errors(one, called, place):
                 edited.append(
                     self.edit(

@@ -1,15 +1,14 @@
 """An edit of the pigments of one subject, from what the encoder has read."""
 
-import math
 from collections.abc import Mapping
 from dataclasses import replace
-from numbers import Real
 from typing import Any, NamedTuple, Protocol, runtime_checkable
 
 import numpy as np
 from numpy.typing import NDArray
 
 from skinnet.errors import InputError
+from skinnet.images._arguments import check_number
 from skinnet.images.picture import Picture
 from skinnet.images.resizing import resize
 from skinnet.images.srgb import srgb_to_linear
@@ -63,11 +62,10 @@ def select_edited(encoder_outputs: Arrays) -> dict[str, NDArray[np.float32]]:
 def check_factors(**factors: Any) -> None:
     """Raise `InputError` for what is no factor of a pigment."""
     for pigment, factor in factors.items():
-        is_number = isinstance(factor, Real) and not isinstance(factor, bool)
-        if not is_number or not (math.isfinite(factor) and 0 <= factor <= MAX_FACTOR):
-            got = f"{float(factor):g}" if is_number else f"{factor!r:.60}"
+        number = check_number(f"The factor of {pigment}", factor)
+        if not 0 <= number <= MAX_FACTOR:
             raise InputError(
-                f"{pigment} is multiplied by a number in [0, {MAX_FACTOR:g}]; got {got}. "
+                f"{pigment} is multiplied by a number in [0, {MAX_FACTOR:g}]; got {number:g}. "
                 "1 leaves it as it is, 2 doubles it."
             )
 

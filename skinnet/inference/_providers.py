@@ -113,7 +113,8 @@ def note_fallback(providers: Providers, ran: str) -> tuple[str, ...]:
 
 
 def _find_name(name: str) -> str:
-    folded = {each.casefold(): each for each in onnxruntime.get_all_providers()}
+    known: list[str] = onnxruntime.get_all_providers()
+    folded = {each.casefold(): each for each in known}
     folded |= {short: long for short, long in _SHORT.items()} | {"dml": DIRECTML}
     found = folded.get(name.casefold()) or folded.get(f"{name}ExecutionProvider".casefold())
     if found is None:

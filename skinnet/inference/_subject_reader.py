@@ -1,6 +1,5 @@
 """The reading and the edit of one subject of a photograph, by an encoder and its decoder."""
 
-import operator
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from functools import cached_property
@@ -10,7 +9,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from skinnet.errors import InputError
+from skinnet.images._arguments import check_path
 from skinnet.images._shot import read_shot
 from skinnet.images.faces._face_parts import find_face_parts
 from skinnet.images.picture import Picture
@@ -24,6 +23,7 @@ from skinnet.inference._face_choice import FaceChoice
 from skinnet.inference._head_crop import Arrays
 from skinnet.inference._metering import brighten, find_gain, scale_back, shift_exposure
 from skinnet.inference._onnx_pair import get_decoder_path, refuse_other_export
+from skinnet.inference._onnx_session import check_threads
 from skinnet.inference._pigment_edit import (
     EditSource,
     check_factors,
@@ -54,10 +54,8 @@ class SubjectReader:
         threads: int | None = None,
         providers: str | Sequence[str] | None = None,
     ) -> None:
-        if model is not None and not isinstance(model, str | Path):
-            raise InputError(f"model is the path of an encoder, X.onnx; got {model!r:.60}.")
-        self.path = SHIPPED_ENCODER if model is None else Path(model)
-        self.threads = _check_threads(threads)
+        self.path = SHIPPED_ENCODER if model is None else check_path("A model", model)
+        self.threads = check_threads(threads)
         choose_providers(providers)  # a name that is not known is refused at once
         self.providers = providers
 
@@ -226,17 +224,3 @@ class SubjectReader:
 
     def _note_provider(self) -> tuple[str, ...]:
         return note_fallback(choose_providers(self.providers), self.encoder.provider)
-
-
-def _check_threads(threads: Any) -> int | None:
-    if threads is None:
-        return None
-    try:
-        count = operator.index(threads)
-    except TypeError:
-        count = 0
-    if count < 1 or isinstance(threads, bool):
-        raise InputError(
-            f"threads is a whole number of at least 1, or None for all cores; got {threads!r:.60}."
-        )
-    return count

@@ -51,7 +51,7 @@ class Decomposer(PhotoEditor):
     """
 
     @overload
-    def __call__(
+    def __call__(  # type: ignore[overload-overlap]  # a path is also an iterable of letters
         self,
         image: ImageLike,
         whole_image: bool = False,
@@ -64,7 +64,7 @@ class Decomposer(PhotoEditor):
     ) -> Decomposition: ...
 
     @overload
-    def __call__(
+    def __call__(  # type: ignore[overload-overlap]  # a path is also an iterable of letters
         self,
         image: ImageLike,
         whole_image: bool = False,
@@ -151,12 +151,13 @@ class Decomposer(PhotoEditor):
             [1]
         """
         region = "skin" if whole_image else region
-        if is_many(image):
+        given: Any = image
+        if is_many(given):
             options = {"faces": faces, "region": region, "capture": capture}
-            return list(self._stream(image, name, detail, options))
-        applied = apply_profile(read_picture(image, name), capture)
+            return list(self._stream(given, name, detail, options))
+        applied = apply_profile(read_picture(given, name), capture)
         picture, capture = applied.picture, applied.capture
-        name = name_image(image, name) or "the image"
+        name = name_image(given, name) or "the image"
         known, notes = join_captures(picture, capture, self.encoder)
         picture = replace(picture, notes=(*picture.notes, *notes))
         subjects = find_subjects(picture.srgb, name, faces, region)

@@ -12,10 +12,12 @@ from numpy.typing import NDArray
 
 from skinnet.errors import InputError
 from skinnet.files import _explain_format
+from skinnet.images._arguments import check_path
 from skinnet.inference._onnx_header import Header
 from skinnet.inference._onnx_session import (
     REMEDY,
     RUNTIME_ERRORS,
+    check_threads,
     identify,
     name_versions,
     open_session,
@@ -159,6 +161,7 @@ def open_model(
         >>> open_model(SHIPPED_ENCODER, "encoder").working_size
         160
     """
+    path, threads = check_path("A model", path), check_threads(threads)
     chosen = choose_providers(providers)
     header = identify(path, kind)
     # First, since a file that is newer than onnxruntime says so in its metadata too.

@@ -8,6 +8,7 @@ import numpy as np
 
 from skinnet._version import __version__
 from skinnet.errors import InputError
+from skinnet.images._arguments import check_text
 from skinnet.images.faces._face_regions import REGION_NAMES
 from skinnet.inference._agreement import (
     describe_outlier,
@@ -104,9 +105,13 @@ class Person:
             >>> low < person.regions["nose"].melanin.mean < high
             True
         """
+        if not isinstance(shots, Iterable):
+            raise InputError(f"shots are a list of decompositions; got {shots!r:.60}.")
         read = [describe_shot(each, f"shot {number}") for number, each in enumerate(shots, 1)]
         if names is not None:
-            called = tuple(names)
+            if not isinstance(names, Iterable) or isinstance(names, str):
+                raise InputError(f"names are a list of texts; got {names!r:.60}.")
+            called = tuple(check_text("The name of a shot", name) for name in names)
             if len(called) != len(read):
                 raise InputError(
                     f"There are {len(read)} shots and {len(called)} names; give each shot one name."

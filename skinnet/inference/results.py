@@ -13,6 +13,7 @@ from numpy.typing import NDArray
 
 from skinnet.errors import InputError
 from skinnet.files import write_text, write_together
+from skinnet.images._arguments import check_path, check_photo
 from skinnet.images._mark import Mark
 from skinnet.images._png_file import write_png
 from skinnet.inference.decomposition import MAP_FILES, Decomposition
@@ -61,7 +62,7 @@ def write_results(
         The number of files.
 
     Raises:
-        InputError: The folder cannot be written.
+        InputError: The folder cannot be written, or the photograph has another shape or type.
 
     Example:
         >>> from pathlib import Path
@@ -74,6 +75,8 @@ def write_results(
         >>> write_results(folder, "a", photo, decomposition, decomposition.summary())
         13
     """
+    check_photo(photo)
+    folder = check_path("The folder of results", folder)
     return _write_all(folder, [_Result(stem, decomposition, summary)], photo, digest)
 
 

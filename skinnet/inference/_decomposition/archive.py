@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 from skinnet._version import __version__
 from skinnet.errors import InputError
-from skinnet.files import _explain_format
+from skinnet.images._arguments import check_path
 from skinnet.images._decode import MAX_PIXELS
 from skinnet.images.box import Box
 from skinnet.images.colour_space import ColourSpace
@@ -47,7 +47,7 @@ _TUPLES = ("notes", "capture_known")
 
 def write_archive(maps: SkinMaps, path: str | PathLike[str]) -> None:
     """Write a decomposition, as `Decomposition.save` describes."""
-    file = Path(path)
+    file = check_path("The file of a decomposition", path)
     if file.suffix.lower() != _SUFFIX:
         raise InputError(f"{file} must end in {_SUFFIX}, the kind of file that is written.")
     source, part = get_source(maps), maps.box.slices
@@ -76,7 +76,9 @@ def read_archive(path: str | PathLike[str], models: ModelPair | None) -> dict[st
     Raises:
         InputError: The file is missing, damaged, of another kind or of another format.
     """
-    file = Path(path)
+    file = check_path("The file of a decomposition", path)
+    if models is not None and not hasattr(type(models), "decoder"):
+        raise InputError(f"decomposer is a Decomposer; got {models!r:.60}.")
     with open_arrays(file) as archive:
         try:
             content = ArrayFile(archive)
@@ -92,9 +94,9 @@ def _check_format(path: Path, header: Mapping[str, Any]) -> None:
     if header["kind"] != _KIND:
         raise ValueError(f"it is of the kind {header['kind']!r:.40}")
     if header["format"] != _FORMAT:
-        advice = _explain_format(header["format"], _FORMAT, header.get("version"))
         raise InputError(
-            f"{path} has format {header['format']}, and this skinnet reads {_FORMAT}; {advice}."
+            f"{path} has format {header['format']}, and this skinnet reads {_FORMAT}; read it with "
+            f'the version that wrote it: pip install "skinnet=={header["version"]}".'
         )
 
 
@@ -106,15 +108,12 @@ def _restore(file: ArrayFile, models: ModelPair | None) -> dict[str, Any]:
     shape = height, width
     box = restore_box(header["box"], shape)
     source = _restore_source(header["source"], file, shape, models)
-    info = header["output_info"].items()
     return {
         **{name: header[name] for name in _PLAIN},
         **{name: tuple(str(each) for each in header[name]) for name in _TUPLES},
         **_paste_maps(file, box, source.picture.srgb),
         "box": box,
-        "output_info": {
-            name: OutputInfo(unit, (*ends,), text) for name, (unit, ends, text) in info
-        },
+        "output_info": {name: _restore_info(*one) for name, one in header["output_info"].items()},
         "uncertainty": _restore_uncertainty(header["uncertainty"], file),
         "colour_space": _restore_space(header["colour_space"], "profile", file),
         "face_parts": restore_parts(header["face_parts"], file, shape),
@@ -136,6 +135,11 @@ def _paste_maps(file: ArrayFile, box: Box, photo: NDArray[np.uint8]) -> dict[str
     return pasted
 
 
+def _restore_info(unit: str, ends: list[float], description: str) -> OutputInfo:
+    low, high = ends
+    return OutputInfo(unit, (float(low), float(high)), description)
+
+
 def _restore_uncertainty(record: Any, file: ArrayFile) -> Uncertainty:
     melanin, hemoglobin = (
         file.read(f"log_sd_{name}", (None, None), "float32") for name in PIGMENTS
@@ -149,8 +153,8 @@ def _record_source(source: EditSource, arrays: dict[str, NDArray[Any]]) -> dict[
     arrays["photo"] = picture.pixels
     if picture.alpha is not None:
         arrays["alpha"] = picture.alpha
-    for name in (*EDITED_MAPS, *_CAPTURE) if source.outputs is not None else ():
-        arrays[f"edit_{name}"] = source.outputs[name]
+    outputs = source.outputs or {}
+    arrays |= {f"edit_{name}": values for name, values in outputs.items()}
     return {
         "name": picture.name,
         "alpha": picture.alpha is not None,

@@ -61,8 +61,9 @@ class FaceMaps(SkinMaps):
             >>> bool(nose.sum() == decomposition.regions["nose"].pixels)
             True
         """
-        if name not in REGION_NAMES:
-            raise InputError(f"The regions of a face are {', '.join(REGION_NAMES)}; got {name!r}.")
+        if not isinstance(name, str) or name not in REGION_NAMES:
+            names = ", ".join(REGION_NAMES)
+            raise InputError(f"The regions of a face are {names}; got {name!r:.60}.")
         if self.face_parts is None:
             raise InputError(f"No face was looked for, so there is no {name}; leave out region.")
         patch = self.face_parts.regions[name].patch

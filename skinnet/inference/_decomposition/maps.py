@@ -7,6 +7,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from skinnet.errors import InputError
 from skinnet.images.box import Box
 from skinnet.images.colour_space import ColourSpace
 from skinnet.images.faces._face_parts import FaceParts
@@ -86,7 +87,11 @@ class SkinMaps:
 
         Returns:
             The map [H, W].
+
+        Raises:
+            InputError: There is no map of this name.
         """
+        _check_name(name)
         base, _, channel = name.rpartition("_")
         if base == "offset":
             return self.offset[..., "rgb".index(channel)]
@@ -101,7 +106,11 @@ class SkinMaps:
 
         Returns:
             The entry of `output_info`; standard deviations have the unit of their pigment.
+
+        Raises:
+            InputError: There is no map of this name.
         """
+        _check_name(name)
         if name.endswith("_sd"):
             unit, ends, description = self.output_info[name.removesuffix("_sd")]
             return OutputInfo(unit, ends, f"standard deviation of: {description}")
@@ -114,3 +123,8 @@ class SkinMaps:
         sds[box.slices] = resize(log_sd, box.width, box.height)
         sds *= getattr(self, pigment)
         return sds
+
+
+def _check_name(name: str) -> None:
+    if not isinstance(name, str) or name not in MAP_FILES:
+        raise InputError(f"The maps are {', '.join(MAP_FILES)}; got {name!r:.60}.")

@@ -20,7 +20,7 @@ _UNITS = {"melanin": "of the epidermis", "hemoglobin": "of the dermis"}
 def to_html(readings: SkinReadings) -> str:
     """Make HTML that stands alone, with every text escaped."""
     height, width = readings.mask.shape
-    title = f"Decomposition of {width} × {height} pixels"
+    title = f"Decomposition of {width} x {height} pixels"
     rows = "".join(
         f'<tr><th scope="row">{escape(name)}</th><td>{escape(value)}</td></tr>'
         for name, value in _list_numbers(readings)

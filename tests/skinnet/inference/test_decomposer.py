@@ -208,7 +208,7 @@ def test_files_are_opened_at_the_first_photograph_and_once(
 
 
 def test_threads_are_counted_from_one(model_file: Path) -> None:
-    with pytest.raises(InputError, match="threads is a whole number of at least 1, .* got 0"):
+    with pytest.raises(InputError, match=r"threads is a whole number of at least 1, .* got 0"):
         Decomposer(model_file, threads=0)
 
 
