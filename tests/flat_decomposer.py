@@ -40,7 +40,7 @@ PEOPLE = 3
 class FlatDecomposer(Decomposer):
     """Reads a thousandth of the red of the first pixel as melanin; white has no face."""
 
-    def __init__(self, model: object = None) -> None:
+    def __init__(self, model: object = None, **_: object) -> None:
         pass
 
     def load(self) -> None:

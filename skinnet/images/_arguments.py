@@ -22,7 +22,7 @@ def check_number(what: str, value: Any) -> float:
     try:
         return float(value)
     except OverflowError:
-        return float("inf") if value > 0 else float("-inf")
+        return float("inf")  # an integer that is larger than any float
 
 
 def check_text(what: str, value: Any) -> str:
@@ -53,10 +53,12 @@ def check_photo(photo: Any) -> NDArray[np.uint8]:
     Raises:
         InputError: It is another thing, or has another shape or type.
     """
-    is_array = isinstance(photo, np.ndarray)
-    if is_array and photo.dtype == np.uint8 and photo.ndim == 3 and photo.shape[2] == 3:
-        return photo
-    got = f"{photo.dtype} {list(photo.shape)}" if is_array else f"a {type(photo).__name__}"
+    got = f"a {type(photo).__name__}"
+    if isinstance(photo, np.ndarray):
+        values: NDArray[np.uint8] = photo
+        if photo.dtype == np.uint8 and photo.ndim == 3 and photo.shape[2] == 3:
+            return values
+        got = f"{photo.dtype} {list(photo.shape)}"
     raise InputError(
         f"This takes a photograph as uint8 sRGB [H, W, 3]; got {got}. "
         "skinnet.images.read_photo makes it from a file, an array or a tensor."

@@ -31,7 +31,7 @@ def compare(options: argparse.Namespace) -> None:
     if options.before == options.after == STDIN:
         raise InputError("Standard input has one photograph; give the file of the other one.")
     open_ahead()
-    decomposer = Decomposer(options.model)
+    decomposer = Decomposer(options.model, providers=options.provider)
     decomposer.load()
     told = ToldCapture.from_options(options, decomposer, 2)
     read = [_read(find_one(path)) for path in (options.before, options.after)]

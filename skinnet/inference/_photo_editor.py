@@ -112,10 +112,14 @@ class PhotoEditor(SubjectReader):
         edited = []
         for one, called, place in name_all(given, name):
             with locate_errors(one, called, place):
+                picture = read_picture(one, called)
                 edited.append(
-                    self.edit(
-                        one, **factors, name=called, faces=faces, region=region, capture=capture
-                    )
+                    self._edit(
+                        *(picture, factors, None, called),
+                        faces=faces,
+                        region=region,
+                        capture=capture,
+                    ).picture.srgb
                 )
         return edited
 

@@ -73,7 +73,7 @@ def _make_decomposer(options: argparse.Namespace) -> Decomposer:
     """Make the decomposer that is asked for, and begin to open what finds faces."""
     if options.region == "face":
         open_ahead()
-    return Decomposer(options.model)
+    return Decomposer(options.model, providers=options.provider)
 
 
 def _predict_one(

@@ -91,7 +91,7 @@ def describe_missing(name: str) -> str:
     return (
         f"{short} is not among the execution providers of this onnxruntime "
         f"({onnxruntime.__version__}), which are {_list_installed()}; {remedy}. A list that ends "
-        f'in "cpu" falls back: providers=["{short}", "cpu"].'
+        f"in cpu falls back: {_ask(short)}."
     )
 
 
@@ -99,7 +99,7 @@ def describe_failed(name: str) -> str:
     """Say that a provider is installed, but does not start here."""
     return (
         f"{shorten(name)} is installed, but does not start on this computer: its device, driver or "
-        f'libraries are missing. Check them, or fall back: providers=["{shorten(name)}", "cpu"].'
+        f"libraries are missing. Check them, or fall back: {_ask(shorten(name))}."
     )
 
 
@@ -123,6 +123,11 @@ def _find_name(name: str) -> str:
             f"{_list_installed()}, and others are {', '.join(_SHORT)}."
         )
     return found
+
+
+def _ask(short: str) -> str:
+    """How a provider is asked for that the processor may stand in for."""
+    return f'--provider {short},cpu (in Python providers=["{short}", "cpu"])'
 
 
 def _list_installed() -> str:

@@ -105,7 +105,7 @@ class Person:
             >>> low < person.regions["nose"].melanin.mean < high
             True
         """
-        if not isinstance(shots, Iterable):
+        if not isinstance(shots, Iterable) or isinstance(shots, np.ndarray):
             raise InputError(f"shots are a list of decompositions; got {shots!r:.60}.")
         read = [describe_shot(each, f"shot {number}") for number, each in enumerate(shots, 1)]
         if names is not None:

@@ -492,3 +492,17 @@ def test_a_closed_pipe_is_no_traceback(photo: Path, model_file: Path) -> None:
 def test_an_empty_name_is_not_the_current_folder(capsys: pytest.CaptureFixture[str]) -> None:
     assert main(["predict", ""]) == 2
     assert "empty name" in capsys.readouterr().err
+
+
+def test_what_runs_the_networks_is_chosen(
+    photo: Path, model_file: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    arguments = ["predict", str(photo), "--json", "--model", str(model_file), "--provider"]
+    assert main([*arguments, "cuda, cpu"]) == 0
+    said = capsys.readouterr()
+    assert json.loads(said.out)["provider"] == "cpu"
+    assert "The networks ran on cpu, since the execution provider cuda is missing." in said.err
+    assert main([*arguments, "cuda"]) == 2
+    assert "pip install onnxruntime-gpu" in capsys.readouterr().err
+    assert main([*arguments, "gpu"]) == 2
+    assert "There is no execution provider 'gpu'" in capsys.readouterr().err

@@ -41,12 +41,19 @@ def add_folder(verb: argparse.ArgumentParser, usual: str) -> None:
 
 
 def add_model(verb: argparse.ArgumentParser) -> None:
-    """Add the encoder."""
+    """Add the encoder, and what runs it."""
     verb.add_argument(
         "--model",
         type=Path,
         metavar="FILE",
         help="encoder, X.onnx, with X.decoder.onnx in the same folder; by default the shipped one",
+    )
+    verb.add_argument(
+        "--provider",
+        type=lambda names: [name.strip() for name in names.split(",")],
+        metavar="NAME",
+        help="what runs the networks: cpu, cuda, coreml or directml; cuda,cpu takes the processor "
+        "where there is no CUDA; by default the processor",
     )
 
 
