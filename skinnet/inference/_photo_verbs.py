@@ -31,10 +31,11 @@ from skinnet.inference._input_run import (
 from skinnet.inference._messages import describe, note, print_line, report
 from skinnet.inference._own_results import Source, choose_edit_target, choose_result_stem
 from skinnet.inference._told_capture import ToldCapture
-from skinnet.inference._uncertainty import describe_mean
+from skinnet.inference._usual_values import describe_reading
 from skinnet.inference.decomposer import Decomposer
 from skinnet.inference.decomposition import Decomposition
 from skinnet.inference.results import (
+    _describe_map_files,
     _list_all_ends,
     _make_folder,
     _name_part,
@@ -127,7 +128,9 @@ def _write(
     """
     folder = _make_folder(options.output or source.folder / OUTPUT)
     with lock_folder(folder):
-        stem = choose_result_stem(folder, source, _list_all_ends(decompositions))
+        stem = choose_result_stem(
+            folder, source, _list_all_ends(decompositions, options.colour_maps)
+        )
         if stem != source.stem:
             others = f"{folder} holds other files of the name {source.stem}"
             notes = (*notes, f"{others}; the results of {source.name} are numbered: {stem}.")
@@ -135,8 +138,9 @@ def _write(
         for each in decompositions:
             summary = {"file": source.name, "input": source.describe(folder)} | each.summary()
             summary["notes"] = [*notes, *summary["notes"]]
+            summary["map_files"] = _describe_map_files(options.colour_maps)
             results.append(_Result(stem + _name_part(each, len(decompositions)), each, summary))
-        count = _write_all(folder, results, picture.srgb, source.digest)
+        count = _write_all(folder, results, picture.srgb, source.digest, options.colour_maps)
     for sentence in dict.fromkeys(each for _, _, summary in results for each in summary["notes"]):
         note(sentence)
     for result in results:
@@ -156,13 +160,14 @@ def _print(source: Source, folder: Path, result: _Result, count: int, as_json: b
 
 
 def _describe_skin(summary: dict[str, Any]) -> str:
-    pigments = summary["pigments"]
+    pigments, optics = summary["pigments"], summary["model"].get("optics")
     if pigments["melanin"]["mean"] is None:
         return "no skin was found"
     numbers = ", ".join(
-        f"{name} {describe_mean(each['mean'], each['interval'])}" for name, each in pigments.items()
+        describe_reading(name, each["mean"], each["interval"], optics)
+        for name, each in pigments.items()
     )
-    return f"{numbers} on skin, {summary['skin_share']:.0%} of the crop"
+    return f"{numbers} on skin, {100 * summary['skin_share']:.2g} % of the crop"
 
 
 def edit(options: argparse.Namespace) -> None:

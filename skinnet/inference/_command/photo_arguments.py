@@ -30,6 +30,13 @@ def add_predict(verb: argparse.ArgumentParser) -> None:
         action="store_false",
         help="do not add the photograph's detail to the network's maps; faster",
     )
+    verb.add_argument(
+        "--colour-maps",
+        choices=("pigments", "all", "none"),
+        default="pigments",
+        help="which maps are written in colour too, as NAME_melanin_colour.png: those of the "
+        "pigments by default; all adds shading and specular reflection",
+    )
     add_common(verb)
 
 
