@@ -30,6 +30,7 @@ from skinnet.inference._input_run import (
 )
 from skinnet.inference._messages import describe, note, print_line, report
 from skinnet.inference._own_results import Source, choose_edit_target, choose_result_stem
+from skinnet.inference._report.html_report import NAME, FaceReport
 from skinnet.inference._told_capture import ToldCapture
 from skinnet.inference._usual_values import describe_reading
 from skinnet.inference.decomposer import Decomposer
@@ -51,18 +52,28 @@ def predict(options: argparse.Namespace) -> bool:
     decomposer.load()
     found = walk(options.input, options.recursive)
     told = ToldCapture.from_options(options, decomposer, len(found.pictures))
-    table = FaceTable(options.csv)
+    table, page = FaceTable(options.csv), FaceReport(_choose_report(options, found))
     totals = run_over(
         found,
-        lambda picture: _predict_one(decomposer, picture, options, told, table),
-        lambda name, error: _report_failure(table, name, error),
+        lambda picture: _predict_one(decomposer, picture, options, told, table, page),
+        lambda name, error: _report_failure(table, page, name, error),
         quiet=options.json,
     )
     for sentence in (*found.notes, *table.notes):
         note(sentence)
+    total = describe_totals(totals, found, "read", _describe_place(found, options.output))
+    page.finish(total)
     if not is_one_file(found, options.input):
-        note(describe_totals(totals, found, "read", _describe_place(found, options.output)))
+        note(total if page.path is None else f"{total} The report is {page.path}.")
     return not totals.failures
+
+
+def _choose_report(options: argparse.Namespace, found: Walk) -> Path | None:
+    """The page that is asked for; without a name it lies in the folder of the first maps."""
+    if options.report is None or options.report.name:
+        return options.report
+    first = next((Path(each.path).parent for each in found.pictures), Path())
+    return (options.output or first / OUTPUT) / NAME
 
 
 def _describe_place(found: Walk, output: Path | None) -> str:
@@ -86,6 +97,7 @@ def _predict_one(
     options: argparse.Namespace,
     told: ToldCapture,
     table: FaceTable,
+    page: FaceReport,
 ) -> int:
     """Decompose a picture, and write its results. Returns the number of faces in them."""
     source, picture, notes = _read(found)
@@ -99,15 +111,18 @@ def _predict_one(
         capture=known,
     )
     try:
-        table.add(_write(source, picture, decompositions, (*notes, *told_notes), options))
+        results, folder = _write(source, picture, decompositions, (*notes, *told_notes), options)
+        table.add(result.summary for result in results)
+        page.add(picture.srgb, results, folder)
     except InputError as error:
         raise NotWrittenError(str(error)) from error
     return sum(each.face_id is not None for each in decompositions)
 
 
-def _report_failure(table: FaceTable, name: str, error: Exception) -> None:
-    """Print why a file was not read, and add it to the table."""
+def _report_failure(table: FaceTable, page: FaceReport, name: str, error: Exception) -> None:
+    """Print why a file was not read, and add it to the table and the page."""
     report(error)
+    page.add_failure(name, describe(error))
     try:
         table.add_failure(name, describe(error))
     except InputError as fault:
@@ -120,11 +135,11 @@ def _write(
     decompositions: Sequence[Decomposition],
     notes: Sequence[str],
     options: argparse.Namespace,
-) -> list[dict[str, Any]]:
+) -> tuple[list[_Result], Path]:
     """Write the results of a photograph under names that are free or its own, and print them.
 
     Returns:
-        The summaries that were written.
+        What was written, and where.
     """
     folder = _make_folder(options.output or source.folder / OUTPUT)
     with lock_folder(folder):
@@ -145,7 +160,7 @@ def _write(
         note(sentence)
     for result in results:
         _print(source, folder, result, count, options.json)
-    return [result.summary for result in results]
+    return results, folder
 
 
 def _print(source: Source, folder: Path, result: _Result, count: int, as_json: bool) -> None:

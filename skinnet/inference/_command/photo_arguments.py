@@ -31,6 +31,15 @@ def add_predict(verb: argparse.ArgumentParser) -> None:
         help="do not add the photograph's detail to the network's maps; faster",
     )
     verb.add_argument(
+        "--report",
+        nargs="?",
+        type=Path,
+        const=Path(),
+        metavar="FILE.html",
+        help="write a page with a row for each face, which needs no other file; by default "
+        "report.html beside the maps",
+    )
+    verb.add_argument(
         "--colour-maps",
         choices=("pigments", "all", "none"),
         default="pigments",
