@@ -34,6 +34,22 @@ def add_predict(verb: argparse.ArgumentParser) -> None:
         action="store_false",
         help="do not add the photograph's detail to the network's maps; faster",
     )
+    verb.add_argument(
+        "--report",
+        nargs="?",
+        type=Path,
+        const=Path(),
+        metavar="FILE.html",
+        help="write a page with a row for each face, which needs no other file; by default "
+        "report.html beside the maps",
+    )
+    verb.add_argument(
+        "--colour-maps",
+        choices=("pigments", "all", "none"),
+        default="pigments",
+        help="which maps are written in colour too, as NAME_melanin_colour.png: those of the "
+        "pigments by default; all adds shading and specular reflection",
+    )
     add_common(verb)
 
 
