@@ -50,7 +50,7 @@ def write_picture(
 ) -> None:
     """Write a picture, as small as PNG can, that says which example made it.
 
-    With `palette` it has 256 colours, which a chart or a sheet of maps needs not exceed.
+    With `palette` it has 256 colours, which is enough for a chart, and too few for skin.
     """
     make_folder(path.parent, "choose another file with -o")
     image = Image.fromarray(picture)

@@ -12,6 +12,7 @@ from PIL import Image
 
 from skinnet.appearance import HybridModel, PigmentEdit, edit_texture, load_maps
 from skinnet.appearance.colour import SkinColour
+from skinnet.images import resize
 from skinnet.inference._tiles import draw_grid, draw_picture, draw_pigment_map
 from skinnet.mesh import read_mesh
 from skinnet.pipeline import RelightSettings
@@ -24,6 +25,8 @@ EDITS = {"hemoglobin": 2.0, "melanin": 1.5}
 """What Figure 6 multiplies, in its upper and in its lower row."""
 
 DEVIATIONS, COMPONENTS = 2.0, 3
+
+_MAPS = {"melanin": "f_mel", "hemoglobin": "f_blood"}
 
 _MODELS = {"HybridModel": "hybrid, own features", "LinearModel": "linear, RGB"}
 _PANELS = {
@@ -43,39 +46,45 @@ def draw_edits(files: Sequence[Path], yaw: float = 20.0) -> NDArray[np.uint8]:
     Returns:
         The picture, a person a row: face, map, edited map, edited face.
     """
-    tiles: list[Image.Image] = []
-    for file, (pigment, factor) in zip(files, EDITS.items(), strict=True):
-        texture, calibrated = load_maps(file)
-        # The calibration holds the polariser's tint; a picture for people is without it.
-        colour = SkinColour(calibrated.matrix, None, calibrated.optics)
-        change, none = PigmentEdit(factor), PigmentEdit()
-        pair = (none, change) if pigment == "hemoglobin" else (change, none)
-        name = "f_blood" if pigment == "hemoglobin" else "f_mel"
-        scene = Scene(read_mesh(file.with_name(file.name.replace("_maps.npz", "_face.obj"))))
-        light = RelightSettings(size=TILE_SIZE, yaw=yaw)
-        share = texture.mask.astype(np.float64)
-        captions = ("", f" x {factor:g}")
-        edited = (texture, edit_texture(texture, colour, *pair))
-        faces = [
-            draw_picture(
-                caption.strip() and f"{pigment}{caption}" or "recovered",
-                light.render(scene, fill_texels(one.albedo(colour), one.mask)),
-            )
-            for caption, one in zip(captions, edited, strict=True)
-        ]
-        maps = [
-            draw_pigment_map(pigment, getattr(one, name), share, f"{pigment}{caption}")
-            for caption, one in zip(captions, edited, strict=True)
-        ]
-        tiles += [faces[0], *maps, faces[1]]
-    return draw_grid(tiles, 4)
+    light = RelightSettings(size=TILE_SIZE, yaw=yaw)
+    rows = [
+        _draw_edit(file, pigment, factor, light)
+        for file, (pigment, factor) in zip(files, EDITS.items(), strict=True)
+    ]
+    return draw_grid([tile for row in rows for tile in row], 4)
+
+
+def _draw_edit(
+    file: Path, pigment: str, factor: float, light: RelightSettings
+) -> tuple[Image.Image, ...]:
+    texture, calibrated = load_maps(file)
+    # The calibration holds the polariser's tint; a picture for people is without it.
+    colour = SkinColour(calibrated.matrix, None, calibrated.optics)
+    melanin, hemoglobin = (PigmentEdit(factor if one == pigment else 1.0) for one in _MAPS)
+    edited = edit_texture(texture, colour, melanin, hemoglobin)
+    scene = Scene(read_mesh(file.with_name(file.name.replace("_maps.npz", "_face.obj"))))
+    share = texture.mask.astype(np.float64)
+    name = f"{pigment} x {factor:g}"
+    faces = [
+        draw_picture(caption, light.render(scene, fill_texels(one.albedo(colour), one.mask)))
+        for caption, one in (("as recovered", texture), (name, edited))
+    ]
+    maps = [
+        draw_pigment_map(pigment, getattr(one, _MAPS[pigment]), share, caption)
+        for caption, one in ((pigment, texture), (name, edited))
+    ]
+    return faces[0], *maps, faces[1]
 
 
 def draw_components(model: Path, maps: Sequence[Path]) -> NDArray[np.uint8]:
-    """Draw the mean and three components of a hybrid model on the mean shape (Figure 7)."""
+    """Draw the mean and three components of a hybrid model on the mean shape (Figure 7).
+
+    The picture has half of the size of its tiles.
+    """
     hybrid = HybridModel.load(model / "hybrid.npz")
     count = min(COMPONENTS, len(hybrid.statistics.variances))
-    return draw_hybrid(hybrid, DEVIATIONS, count, make_renderer(list(maps)))
+    sheet = draw_hybrid(hybrid, DEVIATIONS, count, make_renderer(list(maps)))
+    return resize(sheet, sheet.shape[1] // 2, sheet.shape[0] // 2)
 
 
 def plot_measures(model: Path, dpi: int) -> NDArray[np.uint8]:

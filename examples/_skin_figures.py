@@ -12,7 +12,10 @@ from numpy.typing import NDArray
 from skinnet.images import linear_to_srgb
 from skinnet.physics import WAVELENGTHS, SkinReflectance, load_spectrum_to_srgb
 
-PRESETS = {"paper": "the paper's tables, in consistent units", "measured": "fitted to measured skin"}
+PRESETS = {
+    "paper": "the paper's tables, in consistent units",
+    "measured": "fitted to measured skin",
+}
 """Constants that are drawn, and what they are."""
 
 MELANIN, BLOOD = (0.02, 0.06, 0.10), (0.02, 0.039, 0.05)
@@ -92,9 +95,7 @@ def draw_colours(dpi: int, nodes: int = 96) -> NDArray[np.uint8]:
     return _to_array(figure)
 
 
-def _plot_surface(
-    figure: Figure, place: int, colours: NDArray[np.float64], preset: str
-) -> None:
+def _plot_surface(figure: Figure, place: int, colours: NDArray[np.float64], preset: str) -> None:
     shown = linear_to_srgb(colours.clip(0, 1).astype(np.float32))
     axis = figure.add_subplot(2, 2, place, projection="3d")
     axis.set_title(f"{preset}: (a) skin in linear RGB", loc="left")

@@ -2,9 +2,9 @@
 
     python -m examples.strip --ict ict_facekit.npz [-o demo/strip.png] [--size 480]
 
-The photographs are renders of the project's own, so that the truth is known: each map says what the
-shipped model reads, as the range of nine in ten true means, and what is true. Without ICT-FaceKit, which
-`python -m tools.ict_facekit` makes of its checkout, the heads are procedural.
+The photographs are renders of the project's own, so that the truth is known. Each map says what the
+shipped model reads, as the range of nine in ten true means, and what is true. Without the file that
+`python -m tools.ict_facekit` makes of a checkout of ICT-FaceKit, the heads are procedural.
 """
 
 import argparse
