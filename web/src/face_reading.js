@@ -3,12 +3,15 @@
 import { writeNpy, writeZip } from "./archive.js";
 import { SCALES, colourPlane } from "./colour_scales.js";
 import { Editor, UNCHANGED, isUnchanged } from "./editing.js";
+import { checkFace } from "./face_checks.js";
 import { GuidedPlane } from "./guided_filter.js";
 import { cropHead, cutHead, fadeEdges, turnBack } from "./head_crop.js";
 import { keepOwnSkin } from "./own_skin.js";
 import { cropRaster } from "./raster.js";
 import { ResizedPlane, resize } from "./resizing.js";
-import { averageSkin, findInterval, isSkin, listDoubts } from "./uncertainty.js";
+import {
+  averageSkin, doubtWhite, findInterval, isSkin, listDoubts, measureClipping,
+} from "./uncertainty.js";
 import { measureWhite } from "./white_reference.js";
 
 const HEAD_VIEW = 512; // longest side, in pixels, of the head as the page shows and edits it
@@ -18,10 +21,14 @@ const MAP_SIZE = 640; // longer side, in pixels, of maps that are downloaded in 
 const LEVEL = 0.9; // of the intervals
 
 export class FaceReading {
-  /** Read a face; `others` are the photograph's other faces, `white` a place or null. */
-  static async read(networks, photo, face, others, white) {
+  /**
+   * Read a face, described as `who` in the photograph of a `name`; `others` are the photograph's
+   * other faces, `white` is a place or null. Throws a sentence if it cannot be read.
+   */
+  static async read(networks, photo, { face, who, name, others, isMarked }, white) {
     const known = white ? { white_balance: measureWhite(photo, white.x, white.y) } : {};
     const crop = cropHead(face, photo);
+    const checked = checkFace(photo, crop, face, who, name, isMarked);
     const cut = cutHead(crop, photo, networks.workingSize);
     const { planes: upright, capture, faceSd } = await networks.encode(cut, known);
     const { planes, width, height } = turnBack(
@@ -29,7 +36,15 @@ export class FaceReading {
     );
     keepOwnSkin(planes.mask, width, height, crop.box, face, others);
     const fade = fadeEdges(crop, width, height, photo);
-    const notes = listDoubts(cut, upright.mask, faceSd, [...capture.white_balance], white !== null);
+    const doubts = listDoubts({
+      who, upright, faceSd,
+      clipped: measureClipping(photo, crop.box, planes.mask, width, height),
+      whiteBalance: [...capture.white_balance],
+      isWhiteKnown: white !== null,
+    });
+    const blind = white && (await networks.encode(cut)).capture.white_balance;
+    const whiteDoubts = white ? doubtWhite(who, known.white_balance, blind) : [];
+    const notes = [...checked, ...whiteDoubts, ...doubts];
     return new FaceReading({
       networks, face, crop, planes, width, height, capture, faceSd, fade, notes, photo,
     });
