@@ -220,8 +220,8 @@ def _add_web(verbs: "argparse._SubParsersAction[argparse.ArgumentParser]") -> No
         "--host",
         default="127.0.0.1",
         metavar="ADDRESS",
-        help="127.0.0.1 by default, for this computer alone; 0.0.0.0 opens the page to the network, "
-        "which a container needs",
+        help="127.0.0.1 by default, for this computer alone; 0.0.0.0 opens the page to the "
+        "network, which a container needs",
     )
     verb.add_argument(
         "--no-open", dest="open", action="store_false", help="do not open the browser"
