@@ -15,7 +15,11 @@ import numpy as np
 
 from skinnet.files import write_text
 from skinnet.images import _colour_content as colour
+from skinnet.images import _face_cover as face_cover
+from skinnet.images import _face_skin as face_skin
 from skinnet.images import _skin_colours as skin_colours
+from skinnet.images import _skin_gaps as skin_gaps
+from skinnet.images.faces import _face_zones as face_zones
 from skinnet.images.skin_segmentation import SKIN_AREAS
 from skinnet.inference import _doubts as doubts
 from skinnet.inference import _face_checks as faces
@@ -63,7 +67,37 @@ _LIMITS: dict[str, tuple[ModuleType, tuple[str, ...]]] = {
             *("_HEAD", "_FACE", "_HEAD_LIMIT", "_FACE_LIMIT", "_ON_CURVE", "_DARK", "_TINTS"),
         ),
     ),
-    "SKIN": (skin_colours, ("_SKIN", "_SKIN_PRECISION")),
+    "SKIN": (
+        skin_colours,
+        (
+            *("_SKIN", "_SKIN_PRECISION", "_MIN_COVARIANCE", "_SPECULAR_SHARES"),
+            *("_LOWEST", "_BIN", "_BINS", "_UNSEEN"),
+        ),
+    ),
+    "MASK": (
+        face_skin,
+        (
+            *("_FACE_SIZE", "_SHADING", "_LEAST_EVIDENCE", "_MOST_EVIDENCE", "_LEAST_PRIOR"),
+            *("_FACE_ODDS", "_BEARD_ODDS", "_NECK_ODDS", "_LIPS_ODDS", "_LIPS", "_LIPS_WIDTH"),
+            *("_BEARD_DARKNESS", "_BEARD_ROUGHNESS", "_LEAST_BEARD", "_EDGE_RADIUS"),
+            "_EDGE_VARIANCE",
+        ),
+    ),
+    "GAPS": (
+        skin_gaps,
+        (
+            *("_LARGEST_HOLE", "_SHADOW", "_HIGHLIGHT", "_LOWER_FACE", "_MOST_OFF"),
+            *("_LEAST_BEARD", "_ABOVE"),
+        ),
+    ),
+    "COVER": (face_cover, ("_LEAST_EYES", "_LEAST_SHARE")),
+    "OUTLINES": (
+        face_zones,
+        (
+            *("_OVAL", "_BROWS", "_NOSTRILS", "_JAW", "_BEARD", "_CHIN_PAD", "_CLOTH", "_NECK"),
+            *("RIGHT_EYE", "LEFT_EYE", "LIPS", "INNER_LIPS", "BROW", "CHIN"),
+        ),
+    ),
 }
 
 
@@ -82,12 +116,17 @@ def make_module() -> str:
     }
     parts["SENTENCES"]["grey"] = colour._ALL_GREY
     parts["SKIN"]["AREAS"] = SKIN_AREAS
-    constants = (
-        f"export const {name} = {json.dumps(part, indent=2, ensure_ascii=False)};\n"
-        for name, part in parts.items()
-    )
+    constants = (f"export const {name} = {_write(part)};\n" for name, part in parts.items())
     head = "/** Written by `python -m tools.page_data`; do not change it by hand. */\n"
     return "\n".join((head, *constants))
+
+
+def _write(part: dict[str, Any]) -> str:
+    """One line for each entry."""
+    lines = (
+        f"  {name}: {json.dumps(value, ensure_ascii=False)},\n" for name, value in part.items()
+    )
+    return "{\n" + "".join(lines) + "}"
 
 
 def _find_sentence(module: ModuleType, words: str) -> str:
@@ -124,7 +163,7 @@ def _read_text(node: ast.AST) -> str:
 
 def _round(limit: Any) -> Any:
     """A limit as numbers of JSON; those of single precision by their shortest digits."""
-    if isinstance(limit, np.ndarray):
+    if isinstance(limit, np.ndarray | tuple):
         return [_round(each) for each in limit]
     if isinstance(limit, np.generic):
         return float(str(limit))

@@ -27,6 +27,7 @@ from skinnet.inference._capture_inputs import make_capture_inputs
 from skinnet.inference._doubts import note_clipping, note_dark_skin, note_doubts
 from skinnet.inference._face_checks import check_face
 from skinnet.inference._head_crop import crop_head
+from skinnet.inference._skin_mask import adopt_mask, find_skin
 from skinnet.inference._subject import find_subjects
 
 pytestmark = pytest.mark.slow
@@ -49,7 +50,10 @@ def read_in_python(
 ) -> Maps:
     known = {} if capture is None else make_capture_inputs(capture, decomposer.encoder)
     subject = find_subjects(photo, "photo", "all", "face")[index]
-    return {name: each[0] for name, each in decomposer._encode(photo, subject, known).items()}
+    outputs = decomposer._encode(photo, subject, known)
+    mask = find_skin(photo, subject, outputs["mask"][0])
+    adopted = adopt_mask(outputs, mask, photo[subject.crop.box.slices])
+    return {name: each[0] for name, each in adopted.items()}
 
 
 def download(page: Any, button: str) -> bytes:
@@ -69,7 +73,11 @@ def assert_same(maps: Maps, expected: Maps, share: float = 1.0) -> None:
     """Check that maps are the same, all pixels or a share of them."""
     for name, plane in maps.items():
         assert plane.shape == expected[name].shape, name
-        assert np.quantile(np.abs(plane - expected[name]), share) < 1e-3, name
+        difference = np.abs(plane - expected[name])
+        if name in ("mask", "specular"):  # outlines are filled, and edges found, at other sizes
+            assert difference.mean() < 3e-3 and np.quantile(difference, 0.99) < 0.05, name
+        else:
+            assert np.quantile(difference, share) < 1e-3, name
 
 
 def move_slider(page: Any, name: str, value: float) -> None:
