@@ -125,7 +125,7 @@ def test_the_readme_has_no_command_that_the_guide_has_not() -> None:
 def run_skinnet(words: list[str]) -> None:
     """Run the command. The photograph shows no chart, and that of a chart shows no face."""
     if words[0] == "web":  # It serves until Ctrl-C; tests/web run it.
-        assert set(words[1:]) <= {"--port", "0", "--no-open"}
+        assert set(words[1:]) <= {"--port", "0", "--no-open", "--host", "0.0.0.0"}
         return
     if DOWNLOADED in words:  # The procedural face stands in; it fits these scans.
         place = words.index(DOWNLOADED)
@@ -165,6 +165,15 @@ def check_git(words: list[str]) -> None:
     assert words[0] == "clone" and words[1].endswith(f"/{DOWNLOADED}")
 
 
+def run_within(words: list[str]) -> None:
+    """Run the command that another tool starts; an image is built from the Dockerfile."""
+    if words[0] == "build":
+        assert (ROOT / "Dockerfile").is_file() and words[-1] == "."
+        return
+    start = len(words) - words[::-1].index("skinnet")
+    run_skinnet(words[start:])
+
+
 def check_make(words: list[str]) -> None:
     """Check that the target exists."""
     makefile = (ROOT / "Makefile").read_text(encoding="utf-8")
@@ -177,6 +186,7 @@ RUN: dict[str, Callable[[list[str]], None]] = {
     "pip": check_pip,
     "git": check_git,
     "make": check_make,
+    **dict.fromkeys(("docker", "pipx", "uvx"), run_within),
 }
 
 

@@ -104,7 +104,7 @@ def test_standard_input_is_known_by_its_content(
     files = save(tmp_path / "a.png"), save(tmp_path / "b.png", DARK)
     for path in (*files, *files):
         data = path.read_bytes()
-        monkeypatch.setattr(sys, "stdin", io.TextIOWrapper(io.BytesIO(data)))
+        monkeypatch.setattr(sys, "stdin", io.TextIOWrapper(io.BytesIO(data), encoding="utf-8"))
         assert run("predict", "-", "-o", tmp_path / "out")[0] == 0
     assert read_melanin(tmp_path / "out") == {"stdin.json": 0.2, "stdin-2.json": 0.1}
 

@@ -94,7 +94,7 @@ def test_a_result_that_is_piped_in_is_refused(
 ) -> None:
     run("predict", save(tmp_path / "a.png"), "-o", tmp_path)
     data = (tmp_path / "a_mask.png").read_bytes()
-    monkeypatch.setattr(sys, "stdin", io.TextIOWrapper(io.BytesIO(data)))
+    monkeypatch.setattr(sys, "stdin", io.TextIOWrapper(io.BytesIO(data), encoding="utf-8"))
     code, _, err = run("predict", "-", "-o", tmp_path)
     assert code == 2 and "standard input is a result of skinnet (map)" in err
 

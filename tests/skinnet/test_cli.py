@@ -247,7 +247,9 @@ def test_standard_input_is_a_photograph(
     predict: Predict, photo: Path, monkeypatch: pytest.MonkeyPatch, tmp_path: Path
 ) -> None:
     monkeypatch.chdir(tmp_path)
-    monkeypatch.setattr(sys, "stdin", io.TextIOWrapper(io.BytesIO(photo.read_bytes())))
+    monkeypatch.setattr(
+        sys, "stdin", io.TextIOWrapper(io.BytesIO(photo.read_bytes()), encoding="utf-8")
+    )
     assert predict("-") == 0
     assert "stdin_panel.png" in names(tmp_path / "skinmaps")
     assert (
@@ -262,7 +264,7 @@ def test_empty_standard_input_is_reported(
     monkeypatch: pytest.MonkeyPatch,
     capsys: pytest.CaptureFixture[str],
 ) -> None:
-    monkeypatch.setattr(sys, "stdin", io.TextIOWrapper(io.BytesIO(b"")))
+    monkeypatch.setattr(sys, "stdin", io.TextIOWrapper(io.BytesIO(b""), encoding="utf-8"))
     assert main([*verb, "-", "--model", str(model_file)]) == 2
     assert (
         capsys.readouterr().err

@@ -141,5 +141,12 @@ def add_web(verb: argparse.ArgumentParser) -> None:
         "--port", type=int, default=8765, metavar="N", help="8765 by default; 0 for any free one"
     )
     verb.add_argument(
+        "--host",
+        default="127.0.0.1",
+        metavar="ADDRESS",
+        help="127.0.0.1 by default, for this computer alone; 0.0.0.0 opens the page to the "
+        "network, which a container needs",
+    )
+    verb.add_argument(
         "--no-open", dest="open", action="store_false", help="do not open the browser"
     )

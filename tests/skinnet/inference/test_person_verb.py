@@ -28,7 +28,7 @@ def shots(tmp_path: Path) -> list[Path]:
 
 
 def load(path: Path) -> dict:
-    return json.loads(path.read_text())
+    return json.loads(path.read_text(encoding="utf-8"))
 
 
 def test_shots_are_fused_into_a_panel_and_a_summary(run: Run, shots: list[Path]) -> None:
