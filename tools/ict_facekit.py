@@ -12,7 +12,7 @@ import json
 import sys
 from itertools import pairwise
 from pathlib import Path
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 from jaxtyping import Float, Int
@@ -118,7 +118,7 @@ def main(arguments: list[str] | None = None) -> int:
     try:
         if options.output.exists():
             raise InputError(f"{options.output} is there already; give another name with -o.")
-        arrays = read_arrays(options.checkout)
+        arrays: dict[str, Any] = read_arrays(options.checkout)
         with write_atomically(options.output) as part:
             with part.open("wb") as stream:
                 np.savez_compressed(stream, **arrays)

@@ -67,10 +67,12 @@ def predict(options: argparse.Namespace) -> bool:
 
 def _choose_report(options: argparse.Namespace, found: Walk) -> Path | None:
     """The page that is asked for; without a name it lies in the folder of the first maps."""
-    if options.report is None or options.report.name:
-        return options.report
+    report: Path | None = options.report
+    if report is None or report.name:
+        return report
     first = next((Path(each.path).parent for each in found.pictures), Path())
-    return (options.output or first / OUTPUT) / NAME
+    folder: Path = options.output or first / OUTPUT
+    return folder / NAME
 
 
 def _describe_place(found: Walk, output: Path | None) -> str:

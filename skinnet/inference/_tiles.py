@@ -132,7 +132,8 @@ def colour_small_map(
     sums = resize(np.where(share > 0, values, 0).astype(np.float32) * share, width, height)
     mean = sums / np.maximum(weight, 1e-6)
     colours = weight[..., None] * scale.colour(mean) + (1 - weight[..., None]) * np.array(BLANK)
-    return colours.astype(np.uint8)
+    small: NDArray[np.uint8] = colours.astype(np.uint8)
+    return small
 
 
 def draw_plain_map(

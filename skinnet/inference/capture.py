@@ -212,7 +212,8 @@ class Capture(NamedTuple):
             (2, True)
         """
         picture = read_picture(image)
-        if not isinstance(place, Sequence | np.ndarray) or np.ndim(place) != 1:
+        is_row = isinstance(place, np.ndarray) and place.ndim == 1
+        if not is_row and (not isinstance(place, Sequence) or isinstance(place, str)):
             raise InputError(f"A place is (x, y) or (x0, y0, x1, y1) in pixels; got {place!r:.60}.")
         card = make_card(colour)
         return _find_balance(measure_colour(picture, tuple(place)), card)

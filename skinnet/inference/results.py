@@ -134,7 +134,8 @@ def _write_result(
     ]
     jobs += [
         partial(
-            *(write_colour_map, temporary(folder / f"{stem}_{name}_colour.png")),
+            write_colour_map,
+            temporary(folder / f"{stem}_{name}_colour.png"),
             *(name, decomposition, digest),
         )
         for name in list_colour_maps(colour_maps)

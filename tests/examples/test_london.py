@@ -34,7 +34,7 @@ def _reduce(template: Path, folder: Path) -> None:
     """Copy a portrait, and its landmarks, at a fifth of its size."""
     with Image.open(template.with_suffix(".jpg")) as photo:
         photo.reduce(5).save(folder / f"{template.stem}.jpg", quality=95)
-    count, *rows = template.read_text().split("\n")
+    count, *rows = template.read_text(encoding="utf-8").split("\n")
     points = np.array([row.split() for row in rows[: int(count)]], float) / 5
     lines = [count, *(f"{x} {y}" for x, y in points)]
     (folder / template.name).write_text("\n".join(lines) + "\n")

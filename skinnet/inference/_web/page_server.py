@@ -68,7 +68,7 @@ class PageServer(ThreadingHTTPServer):
     @property
     def address(self) -> str:
         """The page's address on this computer."""
-        bound = ipaddress.ip_address(self.server_address[0])
+        bound = ipaddress.ip_address(str(self.server_address[0]))
         if bound.is_unspecified:
             return f"http://{HOST}:{self.server_port}/"
         return f"http://{f'[{bound}]' if bound.version == 6 else bound}:{self.server_port}/"
@@ -76,7 +76,7 @@ class PageServer(ThreadingHTTPServer):
     @property
     def is_local(self) -> bool:
         """Whether nothing but this computer can open the page."""
-        return ipaddress.ip_address(self.server_address[0]).is_loopback
+        return ipaddress.ip_address(str(self.server_address[0])).is_loopback
 
     def is_named(self, host: str | None) -> bool:
         """Whether a request's header `Host` names this server.

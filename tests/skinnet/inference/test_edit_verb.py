@@ -21,8 +21,8 @@ DARK = (100, 70, 60)
 
 def pipe(monkeypatch: pytest.MonkeyPatch, data: bytes) -> Callable[[], bytes]:
     """Standard input of some bytes; the function gives those of standard output."""
-    out = io.TextIOWrapper(io.BytesIO())
-    monkeypatch.setattr(sys, "stdin", io.TextIOWrapper(io.BytesIO(data)))
+    out = io.TextIOWrapper(io.BytesIO(), encoding="utf-8")
+    monkeypatch.setattr(sys, "stdin", io.TextIOWrapper(io.BytesIO(data), encoding="utf-8"))
     monkeypatch.setattr(sys, "stdout", out)
     return lambda: out.buffer.getvalue()
 
@@ -152,7 +152,7 @@ def test_a_pipe_that_cannot_be_written_is_said(
             raise OSError(28, "No space left on device")
 
     photo = save(tmp_path / "a.png")
-    full = io.TextIOWrapper(io.BufferedWriter(Full()))
+    full = io.TextIOWrapper(io.BufferedWriter(Full()), encoding="utf-8")
     monkeypatch.setattr(sys, "stdout", full)
     said = refused("edit", photo, "-o", "-", "--melanin", 2)
     assert said == (
