@@ -180,7 +180,7 @@ def study(portraits: Path, output: Path, calibration: str, skins: int) -> None:
     for effect in ("false", "true"):
         folder = output / ("model" if effect == "false" else "model_effect")
         words = ["build-model", *map(str, written), "-o", str(folder)]
-        if skinnet([*words, f"--model.effect={effect}"]):
+        if skinnet([*words, f"--appearance.effect={effect}"]):
             raise SystemExit(2)
     if skins:
         write_skins(portraits, output, skins)

@@ -45,7 +45,7 @@ def study(data: Path, output: Path) -> None:
         # Where a name is taken, the maps would get a number, and the edits would miss them.
         names = [f"{scan.stem}{end}" for end in SCAN_ENDS]
         choose_folder(output, output, names, Source.read([scan]))
-    model = ["--model", data / "models/ict_facekit.npz", "-o", output]
+    model = ["--shape", data / "models/ict_facekit.npz", "-o", output]
     run("maps", head, *model)
     run("maps", james, *model, *WHITE)
     for name, change in {"head": ["--hemoglobin", 2], "james": ["--melanin", 1.5]}.items():

@@ -14,6 +14,9 @@ from skinnet.images import srgb_to_linear
 CARD = np.s_[50:100, 390:450]
 """Where the photograph shows a grey card."""
 
+CHEEK = 135, 200
+"""Row and column of a cheek in the photograph."""
+
 
 def write_pictures(folder: Path) -> None:
     """Write a photograph with a grey card, a chart, a RAW file, and shots in several lights."""
@@ -22,6 +25,7 @@ def write_pictures(folder: Path) -> None:
     _save(photo[:, 4:], folder / "after.jpg")
     photo[CARD] = 180
     _save(photo, folder / "photo.jpg")
+    _save(paint_mask(photo.shape), folder / "cheek.png")
     view = View("D55", 3, tilt=20, axis=40, roll=8, exposure=0.55, contrast=0.14, bend=0.5)
     _save(photograph(view), folder / "chart.jpg")
     raw = raw_files.photograph_picture(srgb_to_linear(astronaut()), "Nikon D700")
@@ -35,6 +39,13 @@ def write_pictures(folder: Path) -> None:
         _save(shot[:300, :400], folder / "photographs" / f"{name}.jpg")
     shutil.copy(folder / "photo.jpg", folder / "folder")
     shutil.copytree(folder / "session", folder / "photos")
+
+
+def paint_mask(shape: tuple[int, ...]) -> np.ndarray:
+    """A white disc with a soft edge on a cheek, uint8 [H, W]."""
+    rows, columns = np.mgrid[: shape[0], : shape[1]]
+    distance = np.hypot(rows - CHEEK[0], columns - CHEEK[1])
+    return (255 * (1.5 - distance / 12).clip(0, 1)).astype(np.uint8)
 
 
 def _save(picture: np.ndarray, path: Path) -> None:

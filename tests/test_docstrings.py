@@ -54,7 +54,12 @@ def test_examples_print_what_they_say(room: str, tmp_path: Path, monkeypatch: An
     examples, runner = 0, doctest.DocTestRunner(optionflags=doctest.NORMALIZE_WHITESPACE)
     for name in public(room):
         found = getattr(importlib.import_module(f"skinnet.{room}"), name)
-        for test in doctest.DocTestFinder().find(found, name):
+        tests = [
+            test
+            for one in [found, *list_bases(found)]
+            for test in doctest.DocTestFinder().find(one, name)
+        ]
+        for test in tests:
             examples += len(test.examples)
             # Another test may import colour-science, which changes how NumPy prints arrays.
             with warnings.catch_warnings(), np.printoptions(legacy=False):
@@ -62,13 +67,20 @@ def test_examples_print_what_they_say(room: str, tmp_path: Path, monkeypatch: An
     assert runner.failures == 0 and examples > 0
 
 
+def list_bases(found: Any) -> list[type]:
+    """The private classes whose methods a public class hands on."""
+    bases = inspect.getmro(found)[1:] if inspect.isclass(found) else ()
+    own = [base for base in bases if base.__module__.startswith("skinnet.")]
+    return [base for base in own if "._" in base.__module__]
+
+
 def documented(name: str, found: Any) -> Iterator[tuple[str, Any]]:
     """A function, or a class and its public methods."""
     if not (inspect.isfunction(found) or inspect.isclass(found)):
         return
     yield name, found
-    if inspect.isclass(found):
-        for method, value in vars(found).items():
+    for one in [found, *list_bases(found)] if inspect.isclass(found) else []:
+        for method, value in vars(one).items():
             value = getattr(value, "__func__", value)
             if inspect.isfunction(value) and not method.startswith("_"):
                 yield f"{name}.{method}", value

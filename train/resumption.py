@@ -26,7 +26,8 @@ def check_resumption(path: str | Path, model: LightningModule, training: bool) -
         InputError: It belongs to a model of another shape, or lacks the state of a training.
     """
     checkpoint = read_checkpoint(path)
-    own = {"widths": list(model.model.config.widths)}  # type: ignore[union-attr]
+    network: Any = model.model
+    own = {"widths": list(network.config.widths)}
     found = {"widths": list(checkpoint["skinnet"].get("widths", []))}
     if found != own:
         raise InputError(

@@ -6,7 +6,7 @@ import struct
 import zlib
 from collections.abc import Iterator
 from contextlib import contextmanager
-from io import BufferedIOBase
+from io import BufferedIOBase, BufferedReader
 from pathlib import Path
 from typing import BinaryIO
 
@@ -26,7 +26,7 @@ READ_ERRORS = (
 
 
 @contextmanager
-def open_file(path: str | Path) -> Iterator[BinaryIO]:
+def open_file(path: str | Path) -> Iterator[BufferedReader]:
     """Open a regular file.
 
     Raises:
@@ -77,9 +77,14 @@ def read_stream(stream: BinaryIO | BufferedIOBase, name: str, most: int = MOST_B
         data = stream.read(most + 1)
     except OSError as error:
         raise InputError(f"{name} cannot be read ({error.strerror}); give a file.") from error
+    check_length(data, name, most)
+    return data
+
+
+def check_length(data: bytes | bytearray | memoryview, name: str, most: int = MOST_BYTES) -> None:
+    """Raise `InputError` for more bytes than a limit."""
     if len(data) > most:
         raise _too_large(name, most)
-    return data
 
 
 def _too_large(name: str, most: int) -> InputError:

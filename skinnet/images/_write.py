@@ -32,14 +32,16 @@ _WORDS = {PHOTOSHOP: "IPTC and other image resources", DPI: "the resolution (dpi
 class Format(NamedTuple):
     """A format of files: its name, its suffixes, what it holds, and its writer.
 
-    `in_exif` is what it can state by EXIF alone: `mark`, `dpi`.
+    `in_exif` is what it can state by EXIF alone: `mark`, `dpi`. `is_lossy` says whether its writer
+    takes a quality.
     """
 
     name: str
     suffixes: tuple[str, ...]
     holds: frozenset[str]
-    write: Callable[[Path, Picture, Carried], None]
+    write: Callable[..., None]
     in_exif: frozenset[str] = frozenset()
+    is_lossy: bool = False
 
 
 _JPEG = Format(
@@ -48,6 +50,7 @@ _JPEG = Format(
     frozenset({CMYK, PROFILE, EXIF, XMP, PHOTOSHOP, COMMENT, DPI}),
     writers.write_jpeg,
     frozenset({"mark"}),
+    is_lossy=True,
 )
 _PNG = Format(
     "PNG",
@@ -62,9 +65,9 @@ _TIFF = Format(
     write_tiff,
     frozenset({"mark"}),
 )
-_WEBP = Format("WebP", (".webp",), _ANY_NAME, writers.write_webp, _IN_EXIF)
-_AVIF = Format("AVIF", (".avif",), _ANY_NAME, writers.write_avif, _IN_EXIF)
-_HEIF = Format("HEIC", (".heic", ".heif", ".hif"), _ANY_NAME, writers.write_heif, _IN_EXIF)
+_WEBP = Format("WebP", (".webp",), _ANY_NAME, writers.write_webp, _IN_EXIF, True)
+_AVIF = Format("AVIF", (".avif",), _ANY_NAME, writers.write_avif, _IN_EXIF, True)
+_HEIF = Format("HEIC", (".heic", ".heif", ".hif"), _ANY_NAME, writers.write_heif, _IN_EXIF, True)
 _BMP = Format("BMP", (".bmp", ".dib"), frozenset({DPI}), writers.write_bmp)
 _JP2 = Format("JPEG 2000", (".jp2",), frozenset({ALPHA, DEEP, PROFILE, EXIF, XMP, DPI}), write_jp2)
 _PPM = Format("PPM", (".ppm", ".pnm"), frozenset({DEEP}), writers.write_ppm)
@@ -114,6 +117,11 @@ def _list_needs(picture: Picture) -> frozenset[str]:
     return frozenset(need for need, there in needs.items() if there)
 
 
+def has_format(suffix: str) -> bool:
+    """Whether a suffix is one of a format that is written."""
+    return any(suffix.lower() in each.suffixes for each in _FORMATS.values())
+
+
 def find_format(path: Path) -> Format:
     """Find the format that a file's suffix asks for.
 
@@ -133,13 +141,35 @@ def find_format(path: Path) -> Format:
     return found
 
 
-def write_picture(path: Path, picture: Picture, mark: Mark | None = None) -> tuple[str, ...]:
+def check_quality(quality: int) -> None:
+    """Refuse a quality that no format has.
+
+    Raises:
+        InputError: It is outside 1 to 100.
+    """
+    if not 1 <= quality <= 100:
+        raise InputError(
+            f"The quality is a number from 1 to 100; got {quality}. 95 is high, 75 is usual for "
+            "the web; without one the edit is as good as its photograph."
+        )
+
+
+def write_picture(
+    path: Path,
+    picture: Picture,
+    mark: Mark | None = None,
+    quality: int | None = None,
+    name: str = "",
+) -> tuple[str, ...]:
     """Write a picture with everything that it carries, completely or not at all.
 
     Args:
         path: The file; its suffix chooses the format.
         picture: The picture, turned upright.
         mark: What the file says of its making.
+        quality: Quality from 1 to 100 for formats with loss; None for that of the original, where
+            it is known, and else for 95, or WebP without loss.
+        name: What messages call the file; its path by default.
 
     Returns:
         A sentence for each thing that the format cannot hold, and that is lost.
@@ -147,44 +177,47 @@ def write_picture(path: Path, picture: Picture, mark: Mark | None = None) -> tup
     Raises:
         InputError: The suffix is of no known format, or the file cannot be written.
     """
-    target = find_format(path)
-    fitted, notes = _fit_pixels(picture.as_colour(), target, path)
+    target, name = find_format(path), name or str(path)
+    fitted, notes = _fit_pixels(picture.as_colour(), target, name)
     carried = carry(fitted, mark, target.in_exif, str(path))
     carried, lost = _fit_metadata(carried, target)
     lost += _list_left(picture, target)
     if lost:
         words = ", ".join(dict.fromkeys(lost))
-        notes.append(f"{path} is without these parts of {picture.name}: {words}.")
+        notes.append(f"{name} is without these parts of {picture.name}: {words}.")
+    if quality is not None and not target.is_lossy:
+        notes.append(f"{name} is written without loss: {target.name} has no quality.")
+    options = {} if quality is None or not target.is_lossy else {"quality": quality}
     try:
         with write_atomically(path) as part:
-            target.write(part, fitted, carried)
+            target.write(part, fitted, carried, **options)
     except InputError:
         raise
     except READ_ERRORS as error:  # encoders refuse by many of them, such as sizes above a limit
         fault = error if isinstance(error, OSError) else OSError(str(error))
         explained = _explain_fault(fault, "choose another file with -o")
-        raise InputError(f"{path} cannot be written {explained}.") from error
+        raise InputError(f"{name} cannot be written {explained}.") from error
     return tuple(notes)
 
 
-def _fit_pixels(picture: Picture, target: Format, path: Path) -> tuple[Picture, list[str]]:
+def _fit_pixels(picture: Picture, target: Format, name: str) -> tuple[Picture, list[str]]:
     """Pixels that a format can hold, and sentences on what that costs."""
     notes = []
     if picture.pixels.shape[2] == 4 and CMYK not in target.holds:
-        notes.append(f"{path} is converted to sRGB, since {target.name} holds no CMYK.")
+        notes.append(f"{name} is converted to sRGB, since {target.name} holds no CMYK.")
         picture = convert_to_srgb(picture)
     if picture.colour_space.profile and PROFILE not in target.holds:
         space = picture.colour_space.name
         reason = f"since {target.name} holds no colour profile"
-        notes.append(f"{path} is converted from {space} to sRGB, {reason}.")
+        notes.append(f"{name} is converted from {space} to sRGB, {reason}.")
         picture = convert_to_srgb(picture)
     if picture.alpha is not None and ALPHA not in target.holds:
         if (picture.alpha < np.iinfo(picture.alpha.dtype).max).any():
             words = f"since {target.name} holds no transparency"
-            notes.append(f"{path} is blended with white, {words}.")
+            notes.append(f"{name} is blended with white, {words}.")
         picture = blend_with_white(picture)
     if picture.pixels.dtype.itemsize == 2 and DEEP not in target.holds:
-        notes.append(f"{path} has 8 bits a channel, since {target.name} holds no 16.")
+        notes.append(f"{name} has 8 bits a channel, since {target.name} holds no 16.")
         picture = reduce_depth(picture)
     return picture, notes
 

@@ -19,39 +19,46 @@ _QUALITY = 95
 _SUBSAMPLINGS = {0: "4:4:4", 1: "4:2:2", 2: "4:2:0"}
 
 
-def write_jpeg(path: Path, picture: Picture, carried: Carried) -> None:
-    """Write a JPEG file with the tables and the subsampling of the original, if that is one."""
+def write_jpeg(path: Path, picture: Picture, carried: Carried, quality: int | None = None) -> None:
+    """Write a JPEG file with the subsampling of the original, if that is one.
+
+    Without a quality it has the original's tables too.
+    """
     image = _to_pillow(picture)
     buffer = BytesIO()
+    options = _choose_tables(carried, image.mode)
+    if quality is not None:
+        options = {key: value for key, value in options.items() if key != "qtables"}
+        options["quality"] = quality
     try:
-        image.save(buffer, "JPEG", **_choose_tables(carried, image.mode))
+        image.save(buffer, "JPEG", **options)
     except READ_ERRORS:  # tables that Pillow does not write
-        image.save(buffer, "JPEG", quality=_QUALITY, subsampling=0)
+        image.save(buffer, "JPEG", quality=quality or _QUALITY, subsampling=0)
     encoded = buffer.getvalue()
     path.write_bytes(jpeg.replace_segments(encoded, _list_jpeg_segments(carried, encoded)))
 
 
-def write_webp(path: Path, picture: Picture, carried: Carried) -> None:
-    """Write a WebP file, without loss unless the original is a WebP file with loss."""
-    lossless = carried.own.get("lossless", True)
+def write_webp(path: Path, picture: Picture, carried: Carried, quality: int | None = None) -> None:
+    """Write a WebP file; without a quality it has loss only if the original is one with loss."""
+    lossless = quality is None and carried.own.get("lossless", True)
     _to_pillow(picture).save(
         path,
         "WEBP",
         lossless=lossless,
         exact=True,
-        quality=70 if lossless else _QUALITY,
+        quality=70 if lossless else quality or _QUALITY,
         exif=carried.exif,
         xmp=carried.xmp,
         icc_profile=carried.profile,
     )
 
 
-def write_avif(path: Path, picture: Picture, carried: Carried) -> None:
+def write_avif(path: Path, picture: Picture, carried: Carried, quality: int | None = None) -> None:
     """Write an AVIF file."""
     _to_pillow(picture).save(
         path,
         "AVIF",
-        quality=_QUALITY,
+        quality=quality or _QUALITY,
         subsampling="4:4:4",
         exif=carried.exif,
         xmp=carried.xmp,
@@ -59,7 +66,7 @@ def write_avif(path: Path, picture: Picture, carried: Carried) -> None:
     )
 
 
-def write_heif(path: Path, picture: Picture, carried: Carried) -> None:
+def write_heif(path: Path, picture: Picture, carried: Carried, quality: int | None = None) -> None:
     """Write a HEIC file."""
     import pillow_heif
 
@@ -70,7 +77,7 @@ def write_heif(path: Path, picture: Picture, carried: Carried) -> None:
     with path.open("wb") as target:
         file.save(
             target,
-            quality=_QUALITY,
+            quality=quality or _QUALITY,
             chroma=444,
             exif=carried.exif or None,
             xmp=carried.xmp or None,

@@ -10,7 +10,7 @@ class ColourSpace(NamedTuple):
         name: sRGB, Adobe RGB (1998), Display P3, or what the picture's profile calls itself.
         known_from: The statement that decided it: "ICC profile", "cICP chunk", "sRGB chunk", "gAMA
             and cHRM chunks", "EXIF", "TIFF tags", "nclx box", "colr box", "BMP header",
-            "RAW development", or "assumed".
+            "RAW development", "argument" for what was stated of an array, or "assumed".
         profile: ICC profile from these pixels; None for sRGB.
 
     Source:

@@ -1,24 +1,28 @@
 """Pictures from files and from memory, and PNG files."""
 
 import warnings
-from io import BufferedIOBase, BytesIO
+from dataclasses import replace
+from io import BytesIO
+from os import PathLike
 from pathlib import Path
-from typing import Any, BinaryIO
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 from PIL import Image
 
 from skinnet.errors import InputError
-from skinnet.files._reading import read_file, read_stream
+from skinnet.files._reading import MOST_BYTES, check_length, read_file
 from skinnet.images import _decode
+from skinnet.images._arguments import check_text
+from skinnet.images._array_picture import read_array
+from skinnet.images._picture_sources import PictureSource, is_array
+from skinnet.images.colour_space import ColourSpace
 from skinnet.images.picture import Picture
-from skinnet.images.srgb import to_uint8
 
 
 def read_picture(
-    source: str | Path | BinaryIO | BufferedIOBase | Image.Image | NDArray[Any],
-    name: str | None = None,
+    source: PictureSource, name: str | None = None, *, colour_space: str | ColourSpace | None = None
 ) -> Picture:
     """Read a picture with everything that its file states.
 
@@ -32,51 +36,68 @@ def read_picture(
     light without a tone curve, in the white balance that the camera was set to; the previews in it
     are not read.
 
+    Channels of arrays are last, and those of tensors of torch first; both are red, green, blue:
+    BGR, as OpenCV has it, cannot be told from that, so turn it (`array[..., ::-1]`). The white of
+    uint8 is 255, of uint16 65535, and of floats 1; floats are kept with 16 bits. Values are sRGB,
+    as a file or a screen has them, unless `colour_space` says that they are not.
+
     Args:
-        source: A path, an open binary file, a Pillow image, or an sRGB array [H, W], [H, W, 1],
-            [H, W, 3] or [H, W, 4] of uint8 or of floats in [0, 1].
+        source: A path; the bytes of a file; an open binary file; a Pillow image; an array [H, W],
+            [H, W, 1], [H, W, 3] or [H, W, 4] or a tensor [H, W], [1, H, W], [3, H, W] or
+            [4, H, W], of uint8, uint16 or floats in [0, 1]; or a `Picture`, which is returned.
         name: Name of the picture in messages; the path by default.
+        colour_space: What the values of an array or a tensor are: "sRGB" (by default), "linear
+            sRGB" for linear light, such as that of a renderer, "Display P3", "Adobe RGB (1998)", or
+            the `ColourSpace` of another picture. Files and Pillow images state theirs.
 
     Returns:
         The picture.
 
     Raises:
         InputError: The source is missing, empty, damaged or not a picture, has more than 100
-            megapixels, pixels whose white is not known (floats in a file, PQ, HLG), or is of
-            another type, shape or range.
+            megapixels, pixels whose white is not known (floats in a file, PQ, HLG), is of another
+            type, shape or range, or could mean several things, such as a tensor [H, W, 3].
 
     Example:
         >>> from io import BytesIO
+        >>> import numpy as np
         >>> from skinnet.images import read_picture
         >>> picture = read_picture(BytesIO(b"P6 2 1 255 " + bytes([255, 0, 0, 0, 0, 255])))
         >>> picture.format, picture.colour_space.name, picture.colour_space.known_from
         ('PPM', 'sRGB', 'assumed')
+        >>> grey = np.full((1, 1, 3), 0.2158605)  # linear light
+        >>> read_picture(grey, colour_space="linear sRGB").srgb.tolist()
+        [[[128, 128, 128]]]
     """
-    if isinstance(source, np.ndarray):
-        return _from_array(source, name or "The array")
+    if name is not None:
+        check_text("The name of a picture", name)
+    if is_array(source):
+        return read_array(source, name or "The array", colour_space)
+    if colour_space is not None:
+        raise InputError(
+            f"colour_space={colour_space!r:.60} is for arrays and tensors; a file or a Pillow "
+            "image states its own, or is sRGB."
+        )
+    if isinstance(source, Picture):
+        return source if name is None else replace(source, name=name)
     if isinstance(source, Image.Image):
         with warnings.catch_warnings():
             warnings.simplefilter("ignore")
             return _decode.decode_image(source, name or "The image")
-    if isinstance(source, str | Path):
+    if isinstance(source, str | PathLike):
         return _from_path(Path(source), name or str(source))
-    if not hasattr(source, "read"):
-        kind = type(source).__name__
-        raise InputError(f"An image is a path, a Pillow image or an array; got {kind}.")
-    return _decode.decode_file(BytesIO(read_stream(source, name or "The data")), name or "The data")
+    return _decode.decode_file(BytesIO(_read_bytes(source, name or "The data")), name or "The data")
 
 
-def read_photo(
-    source: str | Path | BinaryIO | BufferedIOBase | Image.Image | NDArray[Any],
-    name: str | None = None,
-) -> NDArray[np.uint8]:
+def read_photo(source: PictureSource, name: str | None = None) -> NDArray[np.uint8]:
     """Read a photograph as upright sRGB without alpha.
 
     It is `read_picture`, whose transparent pixels are blended with white. Grey pictures are read
     too, but a `Decomposer` refuses them.
 
     Args:
-        source: A path, an open binary file, a Pillow image or an array, as for `read_picture`.
+        source: A path, bytes, an open binary file, a Pillow image, an array, a tensor or a
+            `Picture`, as for `read_picture`.
         name: Name of the photograph in error messages; the path by default.
 
     Returns:
@@ -114,30 +135,29 @@ def _from_path(path: Path, name: str) -> Picture:
         raise InputError(f"{path} cannot be read: {error}.") from error
 
 
-def _from_array(array: NDArray[Any], name: str) -> Picture:
-    grey = array.ndim == 2 or (array.ndim == 3 and array.shape[2] == 1)
-    if (not grey and not (array.ndim == 3 and array.shape[2] in (3, 4))) or array.size == 0:
+def _read_bytes(source: Any, name: str) -> bytes:
+    """The bytes of a file, from memory or from an open file."""
+    if isinstance(source, bytes | bytearray | memoryview):
+        return bytes(source)
+    if not hasattr(source, "read"):
+        kind = type(source).__name__
         raise InputError(
-            f"A photograph is [H, W], [H, W, 3] or [H, W, 4]; got shape {list(array.shape)}."
+            "An image is a path, bytes, an open binary file, a Pillow image, an array or a tensor; "
+            f"got {kind}."
         )
-    _decode.check_size(array.shape[1], array.shape[0], name)
-    value = array if array.dtype == np.uint8 else to_uint8(_check_floats(array))
-    colour = value.reshape(value.shape[:2]) if grey else value[..., :3]
-    return Picture(
-        name, np.array(colour), value[..., 3].copy() if array.shape[2:] == (4,) else None
-    )
-
-
-def _check_floats(array: NDArray[Any]) -> NDArray[np.float32]:
-    if not np.issubdtype(array.dtype, np.floating):
+    try:
+        data = source.read(MOST_BYTES + 1)
+        at_end = not data and source.seekable() and source.tell() > 0
+    except (OSError, ValueError, AttributeError) as error:  # closed, or of text that is no UTF-8
         raise InputError(
-            f"A photograph is uint8 or floats in [0, 1]; got {array.dtype}. "
-            "Divide it by its white first."
-        )
-    outside = array[~((array >= 0) & (array <= 1))]
-    if outside.size:
+            f"The open file cannot be read ({error}); open it in binary, as open(path, 'rb') does."
+        ) from error
+    if not isinstance(data, bytes | bytearray | memoryview):
         raise InputError(
-            f"A photograph of floats lies in [0, 1]; got {outside[0]:g}. "
-            "Divide it by 255 if it was read from a file."
+            f"The open file gives {type(data).__name__} and no bytes; open it in binary, as "
+            "open(path, 'rb') does."
         )
-    return array.astype(np.float32)
+    check_length(data, name)
+    if at_end:
+        raise InputError("The open file has been read to its end before; call its seek(0) first.")
+    return bytes(data)

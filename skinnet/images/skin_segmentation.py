@@ -6,6 +6,8 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy import ndimage
 
+from skinnet.errors import InputError
+from skinnet.images._arguments import check_photo
 from skinnet.images._connected_parts import keep_large
 from skinnet.images._face_skin import segment_face_skin
 from skinnet.images._skin_colours import compute_features, fit_normal, measure_distance, step_down
@@ -46,6 +48,9 @@ def segment_skin(photo: NDArray[np.uint8], face: Box | Face) -> NDArray[np.float
     Returns:
         Probability of skin, float32 [H, W] in [0, 1].
 
+    Raises:
+        InputError: The photograph has another shape or type, or the face is neither.
+
     Example:
         >>> from skimage.data import astronaut
         >>> from skinnet.images import Box, segment_skin
@@ -53,7 +58,9 @@ def segment_skin(photo: NDArray[np.uint8], face: Box | Face) -> NDArray[np.float
         >>> bool(mask[125, 224] > 0.8), bool(mask[300, 200] < 0.2)  # nose, suit
         (True, True)
     """
-    height, width = photo.shape[:2]
+    height, width = check_photo(photo).shape[:2]
+    if not isinstance(face, Box | Face):
+        raise InputError(f"face is a Face that find_faces gives, or a Box; got {face!r:.60}.")
     box = face.box if isinstance(face, Face) else face
     around = frame_head(box, width, height, margin=2.4)
     mask = np.zeros((height, width), np.float32)

@@ -1,8 +1,13 @@
 """The verb `capture`, with options that are parsed."""
 
 import argparse
+import json
 import os
+from collections.abc import Sequence
 from pathlib import Path
+from typing import Any
+
+import yaml
 
 from skinnet.errors import InputError
 from skinnet.images._walk import find_one
@@ -24,9 +29,19 @@ def capture(options: argparse.Namespace) -> None:
     else:
         profile = CaptureProfile.from_white(picture, references.place, references.colour)
     profile.save(target)
-    for sentence in (*notes, *picture.notes):
+    sentences = (*notes, *picture.notes)
+    for sentence in sentences:
         note(sentence)
-    print_line(f"{source.name}: {describe_profile(profile)}; {target}")
+    if options.json:
+        print_line(json.dumps(_summarise(source.name, target, sentences), allow_nan=False))
+    else:
+        print_line(f"{source.name}: {describe_profile(profile)}; {target}")
+
+
+def _summarise(name: str, target: Path, notes: Sequence[str]) -> dict[str, Any]:
+    """The content of a profile's file, and where it is from."""
+    content = yaml.safe_load(target.read_text(encoding="utf-8"))
+    return {"file": name, "output": str(target), "profile": content, "notes": list(notes)}
 
 
 def describe_profile(profile: CaptureProfile) -> str:

@@ -8,7 +8,7 @@ from typing import Any
 from skinnet.errors import InputError
 from skinnet.files import READ_ERRORS, write_text, write_together
 from skinnet.files._reading import MOST_TEXT, read_file
-from skinnet.images._mark import Mark, read_mark
+from skinnet.images._mark import EDITED, Mark, read_mark
 from skinnet.images._png_file import write_png
 from skinnet.images._result_names import OUTPUT, choose_stem, lock_folder
 from skinnet.images._walk import STDIN, find_one
@@ -32,7 +32,7 @@ def compare(options: argparse.Namespace) -> None:
     if options.before == options.after == STDIN:
         raise InputError("Standard input has one photograph; give the file of the other one.")
     open_ahead()
-    decomposer = Decomposer(options.model)
+    decomposer = Decomposer(options.model, providers=options.provider)
     decomposer.load()
     told = ToldCapture.from_options(options, decomposer, 2)
     read = [_read(find_one(path)) for path in (options.before, options.after)]
@@ -47,7 +47,7 @@ def compare(options: argparse.Namespace) -> None:
         names=(before.name, after.name),
     )
     notes = [each for _, _, notes in read for each in notes]
-    notes += [*first_notes, *second_notes, *found.notes]
+    notes += [*first_notes, *second_notes, *_note_own_edit(before, after), *found.notes]
     folder = _make_folder(options.output or before.folder / OUTPUT)
     stem, summary = _write(folder, (before, after), found, notes)
     for sentence in summary["notes"]:
@@ -56,6 +56,19 @@ def compare(options: argparse.Namespace) -> None:
         print_line(json.dumps(summary, allow_nan=False))
     else:
         print_line(f"{_describe(found)}; 2 files: {folder / stem}.png and {folder / stem}.json")
+
+
+def _note_own_edit(*sources: Source) -> list[str]:
+    """Note that one of two photographs is an edit of the other."""
+    for photo, other in (sources, sources[::-1]):
+        mark = None if other.path is None else read_mark(other.path)
+        if mark is not None and mark.part == EDITED and mark.digest == photo.digest:
+            return [
+                f"{other.name} is an edit of {photo.name} by skinnet. Whether skin or light has "
+                "changed over a whole face is as uncertain as for any two photographs, so that "
+                "the edit may be called unchanged; skinnet edit --json prints what it has changed."
+            ]
+    return []
 
 
 def _write(

@@ -37,6 +37,20 @@ class ColourChange(NamedTuple):
     gain: NDArray[np.float32]
 
 
+class ColourMeans(NamedTuple):
+    """Mean colours of what was edited, weighed by how much of the edit each pixel got.
+
+    Attributes:
+        weight: Sum of the weights, in pixels.
+        before: Linear sRGB before the edit, in [0, 1], [3]; NaN if nothing was edited.
+        after: The same after it.
+    """
+
+    weight: float
+    before: NDArray[np.float64]
+    after: NDArray[np.float64]
+
+
 def soften_mask(mask: NDArray[np.float32]) -> NDArray[np.float32]:
     """A weight that rises linearly from 0 to 1 between masks of 0.1 and 0.9."""
     scale = np.float32(1 / (_RAMP_END - _RAMP_START))
@@ -72,43 +86,67 @@ def apply_change(
     change: ColourChange,
     specular: NDArray[np.float32],
     mask: NDArray[np.float32],
-) -> None:
+    share: NDArray[Any] | None = None,
+) -> ColourMeans:
     """Change the diffuse reflection in a picture [H, W] by `change` [h, w], in its own pixels.
 
     The diffuse reflection is max(photo - specular, 0) in linear sRGB. The change is weighed by
     `soften_mask`; `specular` [h, w] has the size of `change`, `mask` any, and all three are
     enlarged to that of the crop. Pixels of weight 0, and transparent ones, keep their exact values.
+
+    Args:
+        crop: The picture, which is changed.
+        change: Change of the colours of skin.
+        specular: Specular reflection in linear sRGB.
+        mask: Probability of skin.
+        share: How much of the edit each pixel gets, [H, W], as `to_share` reads it; None for all.
+
+    Returns:
+        The mean colours before and after.
     """
     pixels = crop.pixels
     planes = [*np.moveaxis(np.concatenate(change, -1), -1, 0), specular, mask]
-    height = pixels.shape[0]
-    for top in range(0, height, _STRIP):
-        rows = slice(top, min(top + _STRIP, height))
+    sums = np.zeros(7)
+    for top in range(0, pixels.shape[0], _STRIP):
+        rows = slice(top, min(top + _STRIP, pixels.shape[0]))
         *parts, weight = (enlarge_rows(plane, pixels.shape[:2], rows) for plane in planes)
         skin = soften_mask(weight)
+        if share is not None:
+            skin = skin * to_share(share[rows])
         if crop.alpha is not None:
             skin[crop.alpha[rows] == 0] = 0
         place = skin > 0
         if place.any():
             here = replace(crop, pixels=pixels[rows][place][None], alpha=None)
             inside = [part[place] for part in (*parts, skin)]
-            pixels[rows][place] = _change_pixels(here, np.stack(inside[:6], -1), *inside[6:])
+            old, new, pixels[rows][place] = _change_pixels(here, inside)
+            sums += [inside[-1].sum(), *(inside[-1] @ old), *(inside[-1] @ new)]
+    means = sums[1:] / (sums[0] or np.nan)
+    return ColourMeans(float(sums[0]), means[:3], means[3:])
+
+
+def to_share(values: NDArray[Any]) -> NDArray[np.float32]:
+    """Shares in [0, 1] from bool, integers of 8 or 16 bits without a sign, or floats in [0, 1]."""
+    top = np.iinfo(values.dtype).max if values.dtype.kind == "u" else 1
+    return np.asarray(values.astype(np.float32) / np.float32(top), np.float32)
 
 
 def _change_pixels(
-    here: Picture,
-    change: NDArray[np.float32],
-    specular: NDArray[np.float32],
-    weight: NDArray[np.float32],
-) -> NDArray[Any]:
-    """Stored values [N, C] of the pixels [1, N, C] after their change [N, 6]."""
+    here: Picture, parts: list[NDArray[np.float32]]
+) -> tuple[NDArray[np.float32], NDArray[np.float32], NDArray[Any]]:
+    """Change the pixels [1, N, C] of a picture.
+
+    `parts` are six planes of change, specular reflection and the weight, each [N]. Returns linear
+    sRGB [N, 3] in [0, 1] before and after, and stored values [N, C].
+    """
+    change, specular, weight = np.stack(parts[:6], -1), parts[6][:, None], parts[7][:, None]
     linear = here.linear()[0]
-    diffuse = np.maximum(linear - specular[:, None], 0)
+    diffuse = np.maximum(linear - specular, 0)
     added = change[:, :3] * diffuse + change[:, 3:] * diffuse.sum(-1, keepdims=True)
     changed = (added != 0).any(-1)
-    edited = linear + weight[:, None] * added
+    edited = linear + weight * added
     values: NDArray[Any] = here.with_linear(edited[None], changed[None]).pixels[0]
-    return values
+    return linear.clip(0, 1), edited.clip(0, 1), values
 
 
 def _fade_axis(count: int, at_start: bool, at_end: bool) -> NDArray[np.float64]:

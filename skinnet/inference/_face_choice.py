@@ -1,8 +1,9 @@
 """Which of the faces of a photograph are read."""
 
-import operator
 from collections.abc import Sequence
-from typing import Literal, SupportsIndex
+from typing import Literal
+
+import numpy as np
 
 from skinnet.errors import InputError
 from skinnet.images.faces.face import Face
@@ -13,12 +14,11 @@ FaceChoice = Literal["all", "largest"] | int
 
 def check_choice(faces: object) -> None:
     """Raise `InputError` if `faces` is neither a word that is known nor a number of faces."""
-    count = 0
-    if isinstance(faces, SupportsIndex) and not isinstance(faces, bool):
-        count = operator.index(faces)
-    if count < 1 and faces not in ("all", "largest"):
+    is_known = isinstance(faces, str) and faces in ("all", "largest")
+    is_count = isinstance(faces, int | np.integer) and not isinstance(faces, bool) and faces >= 1
+    if not is_known and not is_count:
         raise InputError(
-            f"faces is all, largest, or how many of the largest, from 1; got {faces!r}."
+            f"faces is all, largest, or how many of the largest, from 1; got {faces!r:.60}."
         )
 
 
@@ -32,10 +32,10 @@ def choose_faces(found: Sequence[Face], faces: FaceChoice) -> list[int]:
 
 
 def note_others(found: int, read: int, name: str) -> tuple[str, ...]:
-    """Note how many faces were found and are not read."""
+    """Note that a photograph shows several faces, and how many of them are not read."""
     more = found - read
     if more < 1:
-        return ()
+        return (f"{name} shows {found} faces, numbered from left to right.",) * (found > 1)
     faces, them = ("face was", "it") if more == 1 else ("faces were", "them")
     return (
         f"{more} more {faces} found in {name}; --faces all "

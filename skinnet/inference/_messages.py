@@ -7,12 +7,13 @@ import sys
 import threading
 from collections.abc import Iterator
 from contextlib import contextmanager
+from enum import IntEnum
 
 from skinnet.errors import _explain_fault
 from skinnet.files._partial import take_removed
 
-_CONTROL = re.compile("[\0-\x1f\x7f-\x9f\u200e\u200f\u202a-\u202e\u2066-\u2069]")
-"""Control characters of C0 and C1, and those that turn the direction of text."""
+_CONTROL = re.compile("[\0-\x08\x0b-\x1f\x7f-\x9f\u200e\u200f\u202a-\u202e\u2066-\u2069]")
+"""Control characters of C0 and C1, apart from tabs and line ends, and those that turn text."""
 
 
 def open_missing_streams() -> None:
@@ -51,24 +52,64 @@ def quit_at_interrupt() -> Iterator[None]:
         signal.signal(signal.SIGINT, signal.default_int_handler)
 
 
+class Verbosity(IntEnum):
+    """How much the command says beside results and errors, which it always prints."""
+
+    QUIET = 0
+    USUAL = 1
+    VERBOSE = 2
+
+
+_level = Verbosity.USUAL
+
+
+@contextmanager
+def keep_verbosity() -> Iterator[None]:
+    """Set how much is said back at the end of a block to what it was before."""
+    before = _level
+    try:
+        yield
+    finally:
+        set_verbosity(before)
+
+
+def set_verbosity(level: Verbosity) -> None:
+    """Set how much is said, in all threads."""
+    global _level
+    _level = level
+
+
+def get_verbosity() -> Verbosity:
+    """How much is said now; progress is for `Verbosity.USUAL` and more."""
+    return _level
+
+
 def print_line(text: str) -> None:
-    """Print a result."""
+    """Print a result: what was asked for."""
     print(_escape(text, sys.stdout.encoding), flush=True)
 
 
 def note(sentence: str, program: str = "skinnet") -> None:
-    """Print what the user should know."""
-    log(f"{program}: {sentence}")
+    """Print what the user should know, unless --quiet is given."""
+    if _level >= Verbosity.USUAL:
+        _print_error(_make_line(f"{program}: {sentence}"))
+
+
+def explain(sentence: str) -> None:
+    """Print what was assumed, how long something took, and the like, if --verbose is given."""
+    if _level >= Verbosity.VERBOSE:
+        _print_error(f"skinnet: {sentence}")
 
 
 def log(line: str) -> None:
-    """Print a line to standard error."""
-    print(_escape(line, sys.stderr.encoding), file=sys.stderr, flush=True)
+    """Print a line on the progress of long work, unless --quiet is given."""
+    if _level >= Verbosity.USUAL:
+        _print_error(line)
 
 
 def report(error: Exception, program: str = "skinnet") -> None:
-    """Print an error as a sentence."""
-    note(describe(error), program)
+    """Print an error as a sentence, always."""
+    _print_error(_make_line(f"{program}: {describe(error)}"))
 
 
 def note_removed() -> None:
@@ -84,6 +125,15 @@ def describe(error: Exception) -> str:
     if isinstance(error, OSError):
         return f"{error.filename or 'A file'} cannot be used {_explain_fault(error)}."
     return str(error)
+
+
+def _print_error(line: str) -> None:
+    print(_escape(line, sys.stderr.encoding), file=sys.stderr, flush=True)
+
+
+def _make_line(sentence: str) -> str:
+    """Escape the line ends that a sentence has from the name of a file."""
+    return sentence.replace("\n", "\\n").replace("\t", "\\t")
 
 
 def _escape(text: str, encoding: str | None) -> str:

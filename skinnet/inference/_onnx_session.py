@@ -2,13 +2,22 @@
 
 import re
 from pathlib import Path
+from typing import Any
 
+import numpy as np
 import onnxruntime
 from onnxruntime.capi import onnxruntime_pybind11_state as ort_errors
 
 from skinnet.errors import InputError
 from skinnet.files._content import describe_content
 from skinnet.inference._onnx_header import Header, read_header
+from skinnet.inference._providers import (
+    CPU,
+    DIRECTML,
+    Providers,
+    choose_providers,
+    describe_failed,
+)
 
 REMEDY = "give a file made by `python -m export`, or leave --model out"
 """What to do about a file that is not one of skinnet's."""
@@ -73,23 +82,61 @@ def identify(path: Path, kind: str) -> Header:
     return header
 
 
-def open_session(path: Path, header: Header, threads: int | None) -> onnxruntime.InferenceSession:
+def open_session(
+    path: Path, header: Header, threads: int | None, providers: Providers
+) -> onnxruntime.InferenceSession:
     """Open a file.
 
     Raises:
-        InputError: The file is newer than onnxruntime, needs another file or is damaged.
+        InputError: The file is newer than onnxruntime, needs another file or is damaged; or the
+            execution provider does not start.
     """
+    options = _make_options(threads, providers)
+    wanted = providers.installed
+    try:
+        session = onnxruntime.InferenceSession(path, options, wanted, enable_fallback=0)
+    except RUNTIME_ERRORS as error:
+        if wanted != [CPU]:  # it may be the device or the file that fails; the CPU tells which
+            return _open_on_cpu(path, header, threads, providers)
+        raise InputError(f"{path} {_explain(str(error), header)}.") from error
+    if not providers.may_fall_back and providers.wanted[0] not in session.get_providers():
+        raise InputError(describe_failed(providers.wanted[0]))
+    return session
+
+
+def _open_on_cpu(
+    path: Path, header: Header, threads: int | None, providers: Providers
+) -> onnxruntime.InferenceSession:
+    """Open a file on the CPU after a provider has failed, if that was asked for."""
+    session = open_session(path, header, threads, choose_providers(None))
+    if not providers.may_fall_back:
+        raise InputError(describe_failed(providers.wanted[0]))
+    return session
+
+
+def _make_options(threads: int | None, providers: Providers) -> onnxruntime.SessionOptions:
     options = onnxruntime.SessionOptions()
     options.log_severity_level = 4  # errors are raised; onnxruntime need not print them too
+    options.enable_mem_pattern = DIRECTML not in providers.wanted  # which it does not support
     if threads is not None:
         options.intra_op_num_threads = threads
-    try:
-        # Its fallback would try the same again, and print a banner.
-        return onnxruntime.InferenceSession(
-            path, options, providers=["CPUExecutionProvider"], enable_fallback=0
+    return options
+
+
+def check_threads(threads: Any) -> int | None:
+    """Check a number of threads; None is all cores.
+
+    Raises:
+        InputError: It is no whole number, or less than 1.
+    """
+    if threads is None:
+        return None
+    is_whole = isinstance(threads, int | np.integer) and not isinstance(threads, bool)
+    if not is_whole or threads < 1:
+        raise InputError(
+            f"threads is a whole number of at least 1, or None for all cores; got {threads!r:.60}."
         )
-    except RUNTIME_ERRORS as error:
-        raise InputError(f"{path} {_explain(str(error), header)}.") from error
+    return int(threads)
 
 
 def _explain(message: str, header: Header) -> str:

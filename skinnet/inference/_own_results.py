@@ -37,7 +37,9 @@ def choose_result_stem(folder: Path, source: Source, ends: Iterable[str]) -> str
     return choose_stem(folder, source.stem, ends, lambda file: _is_result_of(file, source))
 
 
-def choose_edit_target(source: Source, output: Path | None, suffix: str) -> Path:
+def choose_edit_target(
+    source: Source, output: Path | None, suffix: str, folder: Path | None = None
+) -> Path:
     """Choose the file of an edited photograph.
 
     Args:
@@ -45,14 +47,16 @@ def choose_edit_target(source: Source, output: Path | None, suffix: str) -> Path
         output: The file that the user has named; None for INPUT_edited with the suffix, and with a
             number if a file of that name is not an edit of the same photograph.
         suffix: Suffix of a name that the user has not chosen, such as `.png`.
+        folder: Where a name that the user has not chosen is written; the photograph's by default.
 
     Raises:
         InputError: The user's file is the photograph itself, or exists and is not its edit.
     """
     if output is None:
         stem = f"{source.stem}_{EDITED}"
-        number = choose_stem(source.folder, stem, (suffix,), lambda file: _is_edit(file, source))
-        return source.folder / f"{number}{suffix}"
+        folder = source.folder if folder is None else folder
+        number = choose_stem(folder, stem, (suffix,), lambda file: _is_edit(file, source))
+        return folder / f"{number}{suffix}"
     if source.path is not None and _is_same_file(output, source.path):
         raise InputError(f"{output} is the photograph itself; choose another file with -o.")
     if os.path.lexists(output) and not _is_edit(output, source):

@@ -5,6 +5,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from skinnet.errors import InputError
 from skinnet.images.faces._face_regions import REGION_NAMES
 from skinnet.inference._uncertainty import PIGMENTS
 from skinnet.inference.decomposition import Decomposition
@@ -47,6 +48,10 @@ class PersonShot(NamedTuple):
 
 def describe_shot(decomposition: Decomposition, name: str) -> PersonShot:
     """Keep of a decomposition what is fused."""
+    if not isinstance(decomposition, Decomposition):
+        raise InputError(
+            f"A shot is a Decomposition, which a Decomposer makes; got {decomposition!r:.60}."
+        )
     face = [(decomposition.means.get(each), None) for each in PIGMENTS]
     regions = decomposition.regions
     places = [face] + [

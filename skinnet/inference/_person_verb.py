@@ -3,7 +3,6 @@
 import argparse
 import hashlib
 import json
-from collections import Counter
 from collections.abc import Sequence
 from pathlib import Path
 from typing import Any, NamedTuple
@@ -11,29 +10,23 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from skinnet.errors import InputError, NoFaceError
+from skinnet.errors import InputError
 from skinnet.files import write_text, write_together
 from skinnet.images._mark import Mark, read_mark, read_summary
 from skinnet.images._png_file import write_png
 from skinnet.images._result_names import OUTPUT, choose_stem, lock_folder
-from skinnet.images._walk import Found, walk
+from skinnet.images._walk import Found, Walk, walk
 from skinnet.images.resizing import resize
 from skinnet.inference._face_choice import check_choice, note_others
+from skinnet.inference._input_run import Totals, describe_totals, run_over
 from skinnet.inference._messages import note, print_line, report
 from skinnet.inference._own_results import Source
 from skinnet.inference._person_panel import draw_person
 from skinnet.inference._person_shot import PersonShot, describe_shot
-from skinnet.inference._photo_verbs import (
-    _FACELESS,
-    _READ,
-    _READ_NOT,
-    _describe_run,
-    _make_decomposer,
-    _read,
-)
+from skinnet.inference._photo_verbs import _make_decomposer, _read
 from skinnet.inference._tiles import TILE
 from skinnet.inference._told_capture import ToldCapture
-from skinnet.inference._uncertainty import describe_mean
+from skinnet.inference._usual_values import describe_reading
 from skinnet.inference.decomposer import Decomposer
 from skinnet.inference.person import Person
 from skinnet.inference.results import _describe_fault, _make_folder
@@ -56,13 +49,13 @@ def person(options: argparse.Namespace) -> bool:
     decomposer.load()
     found = walk(options.input, options.recursive)
     told = ToldCapture.from_options(options, decomposer, len(found.pictures))
-    read, counts = _read_shots(decomposer, found.pictures, options, told)
+    read, totals = _read_shots(decomposer, found, options, told)
     for sentence in (*found.notes, *(each for one in read for each in one.shot.notes)):
         note(sentence)
-    note(_describe_run(counts, found))
+    note(describe_totals(totals, found))
     fused = Person._fuse([one.shot for one in read])
     _write(read, fused, options)
-    return counts.total() == counts[_READ] and None not in fused.sessions
+    return not totals.failures and None not in fused.sessions
 
 
 def _check_faces(faces: object) -> None:
@@ -76,35 +69,25 @@ def _check_faces(faces: object) -> None:
 
 
 def _read_shots(
-    decomposer: Decomposer,
-    pictures: Sequence[Found],
-    options: argparse.Namespace,
-    told: ToldCapture,
-) -> tuple[list[_Read], Counter[str]]:
+    decomposer: Decomposer, found: Walk, options: argparse.Namespace, told: ToldCapture
+) -> tuple[list[_Read], Totals]:
     """Read every shot; report bad ones and continue."""
     read: dict[str, _Read] = {}
-    counts: Counter[str] = Counter()
-    for picture in pictures:
-        try:
-            one = _read_one(decomposer, picture, options, told)
-            counts[_READ] += 1
-        except BrokenPipeError:
-            raise
-        except (InputError, OSError) as error:
-            counts[_FACELESS if isinstance(error, NoFaceError) else _READ_NOT] += 1
-            report(error)
-            continue
+
+    def read_shot(picture: Found) -> int:
+        one = _read_one(decomposer, picture, options, told)
         first = read.setdefault(one.source.digest, one)
         if first is not one:
             note(f"{one.source.name} has the same content as {first.source.name}; it counts once.")
-    return list(read.values()), counts
+        return int(options.region == "face")
+
+    totals = run_over(found, read_shot, lambda _, error: report(error), options.json)
+    return list(read.values()), totals
 
 
 def _read_one(
     decomposer: Decomposer, found: Found, options: argparse.Namespace, told: ToldCapture
 ) -> _Read:
-    if found.error is not None:
-        raise found.error
     source, picture, notes = _read(found)
     known, told_notes = told.tell(picture)
     (one,) = decomposer(
@@ -164,8 +147,9 @@ def _print(fused: Person, summary: dict[str, Any], files: str, as_json: bool) ->
         print_line(json.dumps(summary, allow_nan=False))
         return
     intervals = fused.interval()
+    optics = fused._read[0].model.get("optics")
     numbers = ", ".join(
-        f"{name} {describe_mean(mean, intervals[name])}" for name, mean in fused.means.items()
+        describe_reading(name, mean, intervals[name], optics) for name, mean in fused.means.items()
     )
     used = [session for session in fused.sessions if session is not None]
     sessions = f"{max(used)} session{'s' * (max(used) > 1)}"

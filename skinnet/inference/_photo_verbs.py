@@ -1,49 +1,46 @@
-"""The verbs `predict` and `edit`, with options that are parsed."""
+"""The verb `predict`, with options that are parsed, and what other verbs share with it."""
 
 import argparse
 import hashlib
 import json
 import sys
-from collections import Counter
 from collections.abc import Sequence
 from io import BytesIO
 from pathlib import Path
 from typing import Any
 
-import numpy as np
-
-from skinnet.errors import InputError, NoFaceError
+from skinnet.errors import InputError
 from skinnet.files._reading import read_stream
-from skinnet.images._mark import EDITED, Mark, read_mark
+from skinnet.images._mark import read_mark
 from skinnet.images._result_names import OUTPUT, compute_digest, lock_folder
-from skinnet.images._walk import STDIN, Found, Walk, check_mark, find_one, walk
-from skinnet.images._write import choose_suffix, find_format, write_picture
+from skinnet.images._walk import STDIN, Found, Walk, check_mark, walk
 from skinnet.images.faces._face_models import open_ahead
 from skinnet.images.photograph import read_picture
 from skinnet.images.picture import Picture
 from skinnet.inference._face_choice import check_choice
 from skinnet.inference._face_rows import FaceTable
+from skinnet.inference._input_run import (
+    NotWrittenError,
+    describe_totals,
+    is_one_file,
+    name_input,
+    run_over,
+)
 from skinnet.inference._messages import describe, note, print_line, report
-from skinnet.inference._own_results import Source, choose_edit_target, choose_result_stem
+from skinnet.inference._own_results import Source, choose_result_stem
+from skinnet.inference._report.html_report import NAME, FaceReport
 from skinnet.inference._told_capture import ToldCapture
-from skinnet.inference._uncertainty import describe_mean
+from skinnet.inference._usual_values import describe_reading
 from skinnet.inference.decomposer import Decomposer
 from skinnet.inference.decomposition import Decomposition
 from skinnet.inference.results import (
+    _describe_map_files,
     _list_all_ends,
     _make_folder,
     _name_part,
     _Result,
     _write_all,
 )
-
-_READ, _FACELESS, _WRITTEN_NOT, _READ_NOT = (
-    "read",
-    "without a face",
-    "could not be written",
-    "could not be read",
-)
-"""What becomes of an input, as the count at the end of a run says it."""
 
 
 def predict(options: argparse.Namespace) -> bool:
@@ -53,29 +50,45 @@ def predict(options: argparse.Namespace) -> bool:
     decomposer.load()
     found = walk(options.input, options.recursive)
     told = ToldCapture.from_options(options, decomposer, len(found.pictures))
-    table = FaceTable(options.csv)
-    counts: Counter[str] = Counter()
-    for picture in found.pictures:
-        try:
-            counts[_predict_one(decomposer, picture, options, told, table)] += 1
-        except BrokenPipeError:
-            raise
-        except (InputError, OSError) as error:
-            counts[_READ_NOT] += 1
-            _report_failure(table, _name(picture), error)
+    table, page = FaceTable(options.csv), FaceReport(_choose_report(options, found))
+    totals = run_over(
+        found,
+        lambda picture: _predict_one(decomposer, picture, options, told, table, page),
+        lambda name, error: _report_failure(table, page, name, error),
+        quiet=options.json,
+    )
     for sentence in (*found.notes, *table.notes):
         note(sentence)
-    single = len(found.pictures) == 1 and found.pictures[0].path == options.input[0]
-    if not single or found.passed_over or len(options.input) > 1:
-        note(_describe_run(counts, found))
-    return counts.total() == counts[_READ]
+    total = describe_totals(totals, found, "read", _describe_place(found, options.output))
+    page.finish(total)
+    if not is_one_file(found, options.input):
+        note(total if page.path is None else f"{total} The report is {page.path}.")
+    return not totals.failures
+
+
+def _choose_report(options: argparse.Namespace, found: Walk) -> Path | None:
+    """The page that is asked for; without a name it lies in the folder of the first maps."""
+    report: Path | None = options.report
+    if report is None or report.name:
+        return report
+    first = next((Path(each.path).parent for each in found.pictures), Path())
+    folder: Path = options.output or first / OUTPUT
+    return folder / NAME
+
+
+def _describe_place(found: Walk, output: Path | None) -> str:
+    """Where maps are written."""
+    folders = {Path(each.path).parent / OUTPUT for each in found.pictures if each.path != STDIN}
+    if output is None and len(folders) > 1:
+        return f"maps in {OUTPUT} beside the photographs"
+    return f"maps in {output or (folders or {Path(OUTPUT)}).pop()}"
 
 
 def _make_decomposer(options: argparse.Namespace) -> Decomposer:
     """Make the decomposer that is asked for, and begin to open what finds faces."""
     if options.region == "face":
         open_ahead()
-    return Decomposer(options.model)
+    return Decomposer(options.model, providers=options.provider)
 
 
 def _predict_one(
@@ -84,35 +97,32 @@ def _predict_one(
     options: argparse.Namespace,
     told: ToldCapture,
     table: FaceTable,
-) -> str:
-    """Decompose a picture, and write its results. Returns under what it is counted."""
-    if found.error is not None:
-        raise found.error
+    page: FaceReport,
+) -> int:
+    """Decompose a picture, and write its results. Returns the number of faces in them."""
     source, picture, notes = _read(found)
     known, told_notes = told.tell(picture)
+    decompositions = decomposer(
+        picture,
+        name=source.name,
+        detail=options.detail,
+        faces=options.faces,
+        region=options.region,
+        capture=known,
+    )
     try:
-        decompositions = decomposer(
-            picture,
-            name=source.name,
-            detail=options.detail,
-            faces=options.faces,
-            region=options.region,
-            capture=known,
-        )
-    except NoFaceError as error:
-        _report_failure(table, source.name, error)
-        return _FACELESS
-    try:
-        table.add(_write(source, picture, decompositions, (*notes, *told_notes), options))
+        results, folder = _write(source, picture, decompositions, (*notes, *told_notes), options)
+        table.add(result.summary for result in results)
+        page.add(picture.srgb, results, folder)
     except InputError as error:
-        _report_failure(table, source.name, error)
-        return _WRITTEN_NOT
-    return _READ
+        raise NotWrittenError(str(error)) from error
+    return sum(each.face_id is not None for each in decompositions)
 
 
-def _report_failure(table: FaceTable, name: str, error: Exception) -> None:
-    """Print why a file was not read, and add it to the table."""
+def _report_failure(table: FaceTable, page: FaceReport, name: str, error: Exception) -> None:
+    """Print why a file was not read, and add it to the table and the page."""
     report(error)
+    page.add_failure(name, describe(error))
     try:
         table.add_failure(name, describe(error))
     except InputError as fault:
@@ -125,15 +135,17 @@ def _write(
     decompositions: Sequence[Decomposition],
     notes: Sequence[str],
     options: argparse.Namespace,
-) -> list[dict[str, Any]]:
+) -> tuple[list[_Result], Path]:
     """Write the results of a photograph under names that are free or its own, and print them.
 
     Returns:
-        The summaries that were written.
+        What was written, and where.
     """
     folder = _make_folder(options.output or source.folder / OUTPUT)
     with lock_folder(folder):
-        stem = choose_result_stem(folder, source, _list_all_ends(decompositions))
+        stem = choose_result_stem(
+            folder, source, _list_all_ends(decompositions, options.colour_maps)
+        )
         if stem != source.stem:
             others = f"{folder} holds other files of the name {source.stem}"
             notes = (*notes, f"{others}; the results of {source.name} are numbered: {stem}.")
@@ -141,13 +153,14 @@ def _write(
         for each in decompositions:
             summary = {"file": source.name, "input": source.describe(folder)} | each.summary()
             summary["notes"] = [*notes, *summary["notes"]]
+            summary["map_files"] = _describe_map_files(options.colour_maps)
             results.append(_Result(stem + _name_part(each, len(decompositions)), each, summary))
-        count = _write_all(folder, results, picture.srgb, source.digest)
+        count = _write_all(folder, results, picture.srgb, source.digest, options.colour_maps)
     for sentence in dict.fromkeys(each for _, _, summary in results for each in summary["notes"]):
         note(sentence)
     for result in results:
         _print(source, folder, result, count, options.json)
-    return [result.summary for result in results]
+    return results, folder
 
 
 def _print(source: Source, folder: Path, result: _Result, count: int, as_json: bool) -> None:
@@ -162,64 +175,14 @@ def _print(source: Source, folder: Path, result: _Result, count: int, as_json: b
 
 
 def _describe_skin(summary: dict[str, Any]) -> str:
-    pigments = summary["pigments"]
+    pigments, optics = summary["pigments"], summary["model"].get("optics")
     if pigments["melanin"]["mean"] is None:
         return "no skin was found"
     numbers = ", ".join(
-        f"{name} {describe_mean(each['mean'], each['interval'])}" for name, each in pigments.items()
+        describe_reading(name, each["mean"], each["interval"], optics)
+        for name, each in pigments.items()
     )
-    return f"{numbers} on skin, {summary['skin_share']:.0%} of the crop"
-
-
-def _describe_run(counts: Counter[str], found: Walk) -> str:
-    """How many pictures were read, passed over and not read, and the reasons."""
-    parts = [f"{counts[_READ]} {_READ}", f"{len(found.passed_over)} passed over"]
-    parts += [f"{counts[each]} {each}" for each in (_FACELESS, _WRITTEN_NOT) if counts[each]]
-    reasons = found.describe_passed_over()
-    passed_over = f" Passed over: {reasons}." if reasons else ""
-    return f"{', '.join(parts)}, {counts[_READ_NOT]} {_READ_NOT}.{passed_over}"
-
-
-def edit(options: argparse.Namespace) -> None:
-    """Write one photograph with its pigments multiplied."""
-    check_choice(options.faces)
-    _refuse_no_change(options)
-    if options.output is not None:
-        find_format(options.output)
-    decomposer = _make_decomposer(options)
-    told = ToldCapture.from_options(options, decomposer, 1)
-    source, picture, notes = _read(find_one(options.input))
-    suffix, changes = choose_suffix(picture, "" if source.path is None else source.path.suffix)
-    target = choose_edit_target(source, options.output, suffix)
-    known, told_notes = told.tell(picture)
-    edited = decomposer.edit_picture(
-        picture,
-        options.melanin,
-        options.hemoglobin,
-        name=source.name,
-        faces=options.faces,
-        region=options.region,
-        capture=known,
-    )
-    if np.array_equal(edited.pixels, picture.as_colour().pixels):
-        raise InputError(
-            f"No pixel of {source.name} changes, and nothing is written: no skin that can be "
-            "edited was found in it, or the factors are too near 1."
-        )
-    losses = write_picture(target, edited, Mark("edit", EDITED, source.digest))
-    changes = () if options.output else changes
-    for sentence in (*notes, *told_notes, *edited.notes, *changes, *losses):
-        note(sentence)
-    print_line(f"{source.name}: {target}")
-
-
-def _refuse_no_change(options: argparse.Namespace) -> None:
-    """Refuse factors of 1: a mere copy would replace an earlier edit of the photograph."""
-    if options.melanin == options.hemoglobin == 1:
-        raise InputError(
-            "Nothing is edited with factors of 1; give --melanin X or --hemoglobin X, such as "
-            "--melanin 1.5."
-        )
+    return f"{numbers} on skin, {100 * summary['skin_share']:.2g} % of the crop"
 
 
 def _read(found: Found) -> tuple[Source, Picture, tuple[str, ...]]:
@@ -228,15 +191,8 @@ def _read(found: Found) -> tuple[Source, Picture, tuple[str, ...]]:
         path = Path(found.path)
         picture = read_picture(path, found.path)
         return Source(found.path, path, compute_digest(path)), picture, found.notes
-    name, data = (
-        _name(found),
-        b"" if sys.stdin is None else read_stream(sys.stdin.buffer, _name(found)),
-    )
+    name = name_input(found)
+    data = b"" if sys.stdin is None else read_stream(sys.stdin.buffer, name)
     notes = check_mark(read_mark(BytesIO(data)), name)
     picture = read_picture(BytesIO(data), name)
     return Source(name, None, hashlib.sha256(data).hexdigest()), picture, notes
-
-
-def _name(found: Found) -> str:
-    """The name of a picture in messages."""
-    return "standard input" if found.path == STDIN else found.path

@@ -34,6 +34,10 @@ class PigmentSummary(NamedTuple):
     sd: float | None = None
     interval: tuple[float, float] | None = None
 
+    def to_json(self) -> dict[str, Any]:
+        """The same as numbers for JSON."""
+        return self._asdict() | {"interval": self.interval and list(self.interval)}
+
 
 class RegionSummary(NamedTuple):
     """The pigments in a region of a face.
@@ -55,7 +59,7 @@ class RegionSummary(NamedTuple):
 
     def to_json(self) -> dict[str, Any]:
         """The same as numbers for JSON."""
-        pigments = {"melanin": self.melanin._asdict(), "hemoglobin": self.hemoglobin._asdict()}
+        pigments = {"melanin": self.melanin.to_json(), "hemoglobin": self.hemoglobin.to_json()}
         indices = None if self.indices is None else self.indices.to_json()
         return {**pigments, "share": self.share, "pixels": self.pixels, "indices": indices}
 

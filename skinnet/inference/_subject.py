@@ -87,8 +87,8 @@ def find_subjects(
     """
     choice = "largest" if faces is None else faces
     check_choice(choice)
-    if region not in ("face", "skin"):
-        raise InputError(f"region is face or skin; got {region!r}.")
+    if not isinstance(region, str) or region not in ("face", "skin"):
+        raise InputError(f"region is face or skin; got {region!r:.60}.")
     if region == "face":
         return _find_face_subjects(photo, name, choice)
     if choice != "largest":

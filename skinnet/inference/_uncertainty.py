@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from skinnet.errors import InputError
+from skinnet.images._arguments import check_number
 from skinnet.images.box import Box
 
 PIGMENTS = ("melanin", "hemoglobin")
@@ -77,6 +78,7 @@ def find_factor(log_sd: float, level: float = LEVEL) -> float:
     Raises:
         InputError: The level is no probability between 0 and 1.
     """
+    level = check_number("The level of an interval", level)
     if not 0 < level < 1:
         raise InputError(
             f"The level of an interval is a probability between 0 and 1; got {level:g}. 0.9 gives "

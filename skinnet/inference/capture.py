@@ -7,14 +7,14 @@ from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
-from PIL import Image
 
 from skinnet.errors import InputError
+from skinnet.images._arguments import check_number, check_text
+from skinnet.images._picture_sources import PictureSource
 from skinnet.images._raw.cameras import find_camera, list_close_names
 from skinnet.images._raw.raw_file import FORMAT as RAW
 from skinnet.images._shot import read_shot
 from skinnet.images.photograph import read_picture
-from skinnet.images.picture import Picture
 from skinnet.images.srgb import LUMINANCE_WEIGHTS, srgb_to_linear
 from skinnet.inference._light_names import find_light
 from skinnet.inference._references.place import (
@@ -101,6 +101,9 @@ class Capture(NamedTuple):
             >>> capture.light, capture.temperature, len(capture.camera)
             ({'D': 1.0}, 5500.0, 6)
         """
+        for what, word in (("camera", camera), ("light", light)):
+            if word is not None:
+                check_text(f"The name of a {what}", word)
         found = find_camera(camera) if camera is not None else None
         if camera is not None and found is None:
             raise InputError(
@@ -116,7 +119,7 @@ class Capture(NamedTuple):
         )
 
     @classmethod
-    def from_photograph(cls, image: str | Path | Image.Image | NDArray[Any] | Picture) -> "Capture":
+    def from_photograph(cls, image: PictureSource) -> "Capture":
         """Find what a photograph itself tells of its capture.
 
         `Decomposer` does this for RAW files, which are developed as training does it. It does not
@@ -138,7 +141,7 @@ class Capture(NamedTuple):
             >>> Capture.from_photograph(astronaut()) == Capture()  # an array has no EXIF
             True
         """
-        picture = image if isinstance(image, Picture) else read_picture(image)
+        picture = read_picture(image)
         camera = find_camera(read_shot(picture.metadata.get("exif", b"")).camera or "")
         return cls(
             camera=None if camera is None else camera.coefficients,
@@ -181,7 +184,7 @@ class Capture(NamedTuple):
     @classmethod
     def from_reference(
         cls,
-        image: str | Path | Image.Image | NDArray[Any] | Picture,
+        image: PictureSource,
         place: Sequence[int],
         colour: float | Sequence[int] | None = None,
     ) -> "Capture":
@@ -208,14 +211,17 @@ class Capture(NamedTuple):
             >>> len(capture.white_balance), capture.exposure is None
             (2, True)
         """
-        picture = image if isinstance(image, Picture) else read_picture(image)
+        picture = read_picture(image)
+        is_row = isinstance(place, np.ndarray) and place.ndim == 1
+        if not is_row and (not isinstance(place, Sequence) or isinstance(place, str)):
+            raise InputError(f"A place is (x, y) or (x0, y0, x1, y1) in pixels; got {place!r:.60}.")
         card = make_card(colour)
         return _find_balance(measure_colour(picture, tuple(place)), card)
 
     @classmethod
     def from_chart(
         cls,
-        image: str | Path | Image.Image | NDArray[Any] | Picture,
+        image: PictureSource,
         chart: str | Path = "classic",
     ) -> "Capture":
         """Read the colour chart in a photograph.
@@ -256,6 +262,7 @@ def _find_balance(sample: Sample, card: Card) -> Capture:
 def _find_exposure(linear: NDArray[np.float64], reflectance: float | None) -> float | None:
     if reflectance is None:
         return None
+    reflectance = check_number("reflectance of a white reference", reflectance)
     if not 0.01 <= reflectance <= 1:
         raise InputError(
             f"reflectance of a white reference is a share in [0.01, 1]; got {reflectance:g}. A "

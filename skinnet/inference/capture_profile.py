@@ -91,7 +91,7 @@ class CaptureProfile:
         # Not at start-up: fits take scipy.optimize, and most photographs come without a chart.
         from skinnet.inference._references.chart_reading import read_chart
 
-        picture = _as_picture(image)
+        picture = read_picture(image)
         reading = read_chart(picture, load_chart(chart))
         plain = reading.tone == ToneCurve()
         rows = tuple(tuple(round(float(one), 5) for one in row) for row in reading.correction)
@@ -129,7 +129,7 @@ class CaptureProfile:
         Raises:
             InputError: As `Capture.from_reference`.
         """
-        picture = _as_picture(image)
+        picture = read_picture(image)
         return cls(
             _round(Capture.from_reference(picture, place, colour)),
             source=(Path(picture.name).name, "white"),
@@ -333,10 +333,6 @@ class CaptureProfile:
             capture=self.capture._replace(exposure=None),
             linear_capture=None if linear is None else linear._replace(exposure=None),
         )
-
-
-def _as_picture(image: Any) -> Picture:
-    return image if isinstance(image, Picture) else read_picture(image)
 
 
 def _round(capture: Capture) -> Capture:

@@ -3,15 +3,14 @@
 import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-from pathlib import Path
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
-from PIL import Image
 
 from skinnet._version import __version__
 from skinnet.errors import InputError, NoFaceError
+from skinnet.images._arguments import check_text
 from skinnet.images.box import Box
 from skinnet.images.faces._outlines import Patch
 from skinnet.images.photograph import read_picture
@@ -30,6 +29,7 @@ from skinnet.inference._comparison.estimate import Estimate, Reading, estimate_c
 from skinnet.inference._comparison.face_warp import FaceWarp
 from skinnet.inference._comparison.picture import describe_change, draw_comparison
 from skinnet.inference._face_choice import note_others
+from skinnet.inference._image_list import ImageLike, name_image
 from skinnet.inference._uncertainty import LEVEL, PIGMENTS
 from skinnet.inference.decomposer import Decomposer
 from skinnet.inference.decomposition import Decomposition
@@ -39,8 +39,6 @@ _LEAST_CELLS, _LEAST_REGION = 30, 2
 
 _OTHER_PERSON = math.log(3)
 """Log change of melanin beyond which two photographs surely show two people."""
-
-ImageLike = str | Path | Image.Image | NDArray[Any] | Picture
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -179,9 +177,11 @@ def compare_photographs(
         >>> compared.face.hemoglobin.log > 0
         True
     """
-    decomposer = decomposer or Decomposer()
-    pictures = [one if isinstance(one, Picture) else read_picture(one) for one in (before, after)]
-    names = names or _name(before, after)
+    decomposer = Decomposer() if decomposer is None else decomposer
+    if not isinstance(decomposer, Decomposer):
+        raise InputError(f"decomposer is a Decomposer; got {decomposer!r:.60}.")
+    pictures = [read_picture(one) for one in (before, after)]
+    names = _name(before, after) if names is None else _check_names(names)
     first = _read(decomposer, pictures[0], names[0], before_capture)
     second = _read(decomposer, pictures[1], names[1], after_capture)
     return _compare(decomposer, (pictures[0].srgb, pictures[1].srgb), (first, second), names)
@@ -312,9 +312,13 @@ def _list_notes(
     return tuple(dict.fromkeys(notes))
 
 
+def _check_names(names: Any) -> tuple[str, str]:
+    if not isinstance(names, Sequence) or isinstance(names, str) or len(names) != 2:
+        raise InputError(f"names are those of both photographs; got {names!r:.60}.")
+    first, second = (check_text("The name of a photograph", name) for name in names)
+    return first, second
+
+
 def _name(before: ImageLike, after: ImageLike) -> tuple[str, str]:
-    first, second = (
-        one.name if isinstance(one, Picture) else str(one) if isinstance(one, str | Path) else ""
-        for one in (before, after)
-    )
+    first, second = name_image(before), name_image(after)
     return first or "the first photograph", second or "the second photograph"

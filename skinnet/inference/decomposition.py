@@ -1,48 +1,23 @@
 """The result for one photograph: maps, light, camera, and their summary."""
 
-from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field
-from functools import cached_property
+from dataclasses import dataclass
+from os import PathLike
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
+from PIL import Image
 
-from skinnet._version import __version__
-from skinnet.errors import InputError
-from skinnet.images.box import Box
-from skinnet.images.colour_space import ColourSpace
-from skinnet.images.faces._face_parts import FaceParts, FaceRegion
-from skinnet.images.faces._face_regions import REGION_NAMES
-from skinnet.images.faces._outlines import Patch
-from skinnet.images.resizing import resize
-from skinnet.inference._index_summary import SkinIndices
-from skinnet.inference._regions import Pigment, RegionSummary, summarise_region
-from skinnet.inference._uncertainty import (
-    LEVEL,
-    PIGMENTS,
-    Uncertainty,
-    describe_mean,
-    find_factor,
-    find_interval,
-    summarise_mean,
-)
-from skinnet.inference.indices import _find_indices
-from skinnet.inference.onnx_model import OutputInfo
-
-SKIN_THRESHOLD = 0.5
-"""Pixels with a larger mask are counted as skin."""
-
-MAP_FILES = (
-    *("melanin", "hemoglobin", "shading", "specular", "mask"),
-    *("offset_r", "offset_g", "offset_b"),
-    *(f"{pigment}_sd" for pigment in PIGMENTS),
-)
-"""Names of the maps [H, W], and how the names of their files end."""
+from skinnet.inference._decomposition.edit import edit_again, get_source
+from skinnet.inference._decomposition.maps import MAP_FILES as MAP_FILES
+from skinnet.inference._decomposition.maps import SKIN_THRESHOLD as SKIN_THRESHOLD
+from skinnet.inference._decomposition.readings import SkinReadings
+from skinnet.inference._decomposition.summary import summarise
+from skinnet.inference._pigment_edit import ModelPair
 
 
 @dataclass(frozen=True, eq=False, repr=False)
-class Decomposition:
+class Decomposition(SkinReadings):
     """Maps of the skin in one photograph, its light and its camera.
 
     image = shading * skin(melanin, hemoglobin) + specular + offset in linear RGB, under `light` and
@@ -87,6 +62,7 @@ class Decomposition:
             (auto or manual) and `light_source`; None is what it does not state.
         skin_chromaticity: Log R/G and log B/G of the mean colour of skin in the photograph, in
             linear sRGB; None without skin.
+        provider: What ran the networks: the execution provider's short name, such as cpu or cuda.
 
     Example:
         >>> from skimage.data import astronaut
@@ -96,238 +72,118 @@ class Decomposition:
         hemoglobin 0.03 (90%: 0.016 to 0.055), 17% is skin>
     """
 
-    melanin: NDArray[np.float32]
-    hemoglobin: NDArray[np.float32]
-    shading: NDArray[np.float32]
-    specular: NDArray[np.float32]
-    mask: NDArray[np.float32]
-    offset: NDArray[np.float32]
-    light: dict[str, float]
-    camera: dict[str, Any]
-    reconstruction: NDArray[np.uint8]
-    box: Box
-    output_info: Mapping[str, OutputInfo]
-    model: dict[str, str]
-    uncertainty: Uncertainty
-    colour_space: ColourSpace = ColourSpace("sRGB", "assumed")
-    notes: tuple[str, ...] = ()
-    face_id: int | None = None
-    faces_found: int | None = None
-    face_parts: FaceParts | None = None
-    tilt: float | None = None
-    pixels_read: int | None = None
-    capture_known: tuple[str, ...] = ()
-    exif: Mapping[str, Any] = field(default_factory=dict)
-    skin_chromaticity: tuple[float, float] | None = None
+    def edit(
+        self,
+        melanin: float = 1.0,
+        hemoglobin: float = 1.0,
+        *,
+        mask: NDArray[Any] | None = None,
+    ) -> NDArray[np.uint8]:
+        """Multiply the pigments of the photograph that was read, without reading it again.
 
-    def __repr__(self) -> str:
-        height, width = self.mask.shape
-        if not self.means:
-            return f"<Decomposition {width} x {height}: no skin>"
-        intervals = self.interval()
-        pigments = (
-            f"{name} {describe_mean(mean, intervals[name])}" for name, mean in self.means.items()
-        )
-        return (
-            f"<Decomposition {width} x {height}: {', '.join(pigments)}, "
-            f"{self.skin_share:.0%} is skin>"
-        )
-
-    @property
-    def skin_share(self) -> float:
-        """Share of skin in what was read: in `box`, or in the turned square that it bounds."""
-        area = self.box.width * self.box.height if self.pixels_read is None else self.pixels_read
-        return np.count_nonzero(self.mask > SKIN_THRESHOLD) / max(area, 1)
-
-    @cached_property
-    def means(self) -> dict[str, float]:
-        """Mean `melanin` and `hemoglobin` of the skin; empty if there is none."""
-        skin = self.mask > SKIN_THRESHOLD
-        if not skin.any():
-            return {}
-        return {name: float(np.mean(getattr(self, name)[skin], dtype=float)) for name in PIGMENTS}
-
-    @property
-    def melanin_sd(self) -> NDArray[np.float32]:
-        """Standard deviation of each pixel's melanin, float32 [H, W].
-
-        To first order it is the fraction times the standard deviation of its natural logarithm. It
-        is 0 where melanin is, and is made anew each time, to save memory.
-        """
-        return self._make_sd_map("melanin")
-
-    @property
-    def hemoglobin_sd(self) -> NDArray[np.float32]:
-        """Standard deviation of each pixel's hemoglobin, float32 [H, W], as of melanin."""
-        return self._make_sd_map("hemoglobin")
-
-    def interval(self, level: float = LEVEL) -> dict[str, tuple[float, float]]:
-        """Find between which fractions the mean pigments of the skin truly lie.
-
-        Pixels and regions are less certain than the mean: `melanin_sd`, `regions`.
+        Every pixel is that which `Decomposer.edit` gives for this face. For that the photograph is
+        kept, and of the network's maps what an edit needs, half a megabyte.
 
         Args:
-            level: Probability that the true mean lies in the interval, between 0 and 1.
+            melanin: Factor of melanin in [0, 10].
+            hemoglobin: Factor of hemoglobin in [0, 10].
+            mask: What to edit of the skin, [H, W], as for `Decomposer.edit`; None for all of it.
 
         Returns:
-            Lowest and highest fraction of `melanin` and `hemoglobin`. Empty if there is no skin.
+            The edited photograph, uint8 sRGB [H, W, 3].
 
         Raises:
-            InputError: The level is no such probability.
+            InputError: A factor or the mask cannot be used; a capture profile has undone the
+                photograph's tone curve; or the model at hand is not that which read it.
 
         Example:
             >>> from skimage.data import astronaut
             >>> from skinnet import Decomposer
-            >>> face = Decomposer(threads=1)(astronaut())
-            >>> low, high = face.interval()["melanin"]
-            >>> low < face.means["melanin"] < high
+            >>> decomposer = Decomposer(threads=1)
+            >>> face = decomposer(astronaut(), detail=False)
+            >>> same = face.edit(melanin=2.0) == decomposer.edit(astronaut(), melanin=2.0)
+            >>> bool(same.all())
             True
         """
-        find_factor(0.0, level)  # refuses a level also where there is no skin
-        return {
-            name: find_interval(mean, self._log_sds[name], self._find_top(name), level)
-            for name, mean in self.means.items()
-        }
+        return edit_again(self, {"melanin": melanin, "hemoglobin": hemoglobin}, mask)
 
-    def indices(self, level: float = LEVEL) -> SkinIndices | None:
-        """Compute colour, typology angle, instrument indices and nearest tone of the mean skin.
+    def plot(self) -> Image.Image:
+        """Draw the panel: the photograph, all maps with their scales, and the reconstruction.
 
-        They are those of skin with the mean pigments; `compute_indices` says how the intervals are
-        found. Those of parts of the face are in `regions`.
-
-        Args:
-            level: Probability that a true number lies in its interval, between 0 and 1.
+        It is what `skinnet predict` writes as NAME_panel.png. Scales are fixed, and in percent;
+        beside the pigments' names are their means with 90 % intervals. Notebooks show it, and
+        `plot().save("panel.png")` writes it.
 
         Returns:
-            The indices; None if there is no skin, or if the model's fractions do not belong to the
-            preset `measured`.
+            A Pillow image of 1608 x 842 pixels.
 
         Raises:
-            InputError: The level is no such probability.
+            InputError: No `Decomposer` has made the decomposition, so its photograph is not known.
 
         Example:
             >>> from skimage.data import astronaut
             >>> from skinnet import Decomposer
-            >>> indices = Decomposer(threads=1)(astronaut()).indices()
-            >>> low, high = indices.typology_angle.interval
-            >>> low < indices.typology_angle.value < high
-            True
+            >>> Decomposer(threads=1)(astronaut(), detail=False).plot().size
+            (1608, 842)
         """
-        find_factor(0.0, level)  # refuses a level also where there is no skin
-        means = self.means.get("melanin"), self.means.get("hemoglobin")
-        return _find_indices(self.model.get("optics"), means, self.uncertainty.face, level)
+        from skinnet.inference.panel import draw_panel  # it stands on decompositions
 
-    @property
-    def landmarks(self) -> NDArray[np.float32] | None:
-        """Columns and rows of the 478 points of MediaPipe's face mesh, float32 [478, 2].
+        return Image.fromarray(draw_panel(get_source(self).picture.srgb, self))
 
-        They are in pixels from the photograph's upper left corner, so that the centre of its first
-        pixel is (0.5, 0.5). The last ten are the irises. None if no face was looked for.
-        """
-        return None if self.face_parts is None else self.face_parts.landmarks
+    def save(self, path: str | PathLike[str]) -> None:
+        """Write everything to one .npz file, completely or not at all.
 
-    @cached_property
-    def regions(self) -> dict[str, RegionSummary]:
-        """Melanin and hemoglobin in regions of the face.
-
-        Of each there are mean, standard deviation over pixels, median, and how certain the mean is.
-        They are forehead, left and right cheek (the person's), nose, lips, chin, neck and eyelids.
-        Each has `share`, the part of it that is skin. Of a region that hair, cloth or the head's
-        turn hides the pigments are None. Empty if no face was looked for.
-
-        Example:
-            >>> from skimage.data import astronaut
-            >>> from skinnet import Decomposer
-            >>> regions = Decomposer(threads=1)(astronaut()).regions
-            >>> 0.01 < regions["nose"].melanin.median < 0.1
-            True
-        """
-        parts = {} if self.face_parts is None else self.face_parts.regions
-        return {name: self._summarise_region(region) for name, region in parts.items()}
-
-    @property
-    def sclera(self) -> NDArray[np.bool_]:
-        """Mask of the whites of the eyes, for the colour of the light, bool [H, W].
-
-        It is empty where eyes are closed, turned away, or narrower than 24 pixels.
-        """
-        return self._paste(() if self.face_parts is None else self.face_parts.sclera)
-
-    @property
-    def teeth(self) -> NDArray[np.bool_]:
-        """Mask of the teeth, bool [H, W].
-
-        It is empty if the mouth is closed, or narrower than 24 pixels.
-        """
-        return self._paste(() if self.face_parts is None else self.face_parts.teeth)
-
-    def region_mask(self, name: str) -> NDArray[np.bool_]:
-        """Mask the pixels of a region of the face that `regions` counts.
+        The file holds the photograph too, so that it can be edited and drawn again; keep it as you
+        keep the photograph. It has no pickles, and its format has a number.
 
         Args:
-            name: A key of `regions`.
-
-        Returns:
-            bool [H, W].
+            path: The file; its name ends in .npz.
 
         Raises:
-            InputError: There is no region of this name, or no face was looked for.
+            InputError: The name does not end in .npz, the file cannot be written, or no
+                `Decomposer` has made the decomposition, so its photograph is not known.
 
         Example:
+            >>> from pathlib import Path
+            >>> from tempfile import mkdtemp
             >>> from skimage.data import astronaut
-            >>> from skinnet import Decomposer
-            >>> decomposition = Decomposer(threads=1)(astronaut(), detail=False)
-            >>> nose = decomposition.region_mask("nose")
-            >>> bool(nose.sum() == decomposition.regions["nose"].pixels)
+            >>> from skinnet import Decomposer, Decomposition
+            >>> file = Path(mkdtemp(), "face.npz")
+            >>> face = Decomposer(threads=1)(astronaut(), detail=False)
+            >>> face.save(file)
+            >>> Decomposition.load(file).to_dict() == face.to_dict()
             True
         """
-        if name not in REGION_NAMES:
-            raise InputError(f"The regions of a face are {', '.join(REGION_NAMES)}; got {name!r}.")
-        if self.face_parts is None:
-            raise InputError(f"No face was looked for, so there is no {name}; leave out region.")
-        patch = self.face_parts.regions[name].patch
-        skin = self.mask[patch.box.slices] > SKIN_THRESHOLD
-        return self._paste([Patch(patch.box, patch.inside & skin)])
+        from skinnet.inference._decomposition.archive import write_archive
 
-    def maps(self) -> dict[str, NDArray[np.float32]]:
-        """Return all maps by name.
+        write_archive(self, path)
 
-        Returns:
-            Maps [H, W]; the channels of the offset are `offset_r`, `offset_g` and `offset_b`.
-        """
-        return {name: self.get_map(name) for name in MAP_FILES}
-
-    def get_map(self, name: str) -> NDArray[np.float32]:
-        """Return one map by its name.
+    @classmethod
+    def load(
+        cls, path: str | PathLike[str], *, decomposer: ModelPair | None = None
+    ) -> "Decomposition":
+        """Read a file that `save` wrote; see there for an example.
 
         Args:
-            name: A key of `maps()`.
+            path: The file.
+            decomposer: The `Decomposer` with which to edit, if the shipped model did not read the
+                photograph; None for the shipped one, which is opened at the first edit.
 
         Returns:
-            The map [H, W].
+            The decomposition: every number is that which was saved.
+
+        Raises:
+            InputError: The file is missing, damaged, of another kind or of a newer format.
         """
-        base, _, channel = name.rpartition("_")
-        if base == "offset":
-            return self.offset[..., "rgb".index(channel)]
-        values: NDArray[np.float32] = getattr(self, name)
-        return values
+        from skinnet.inference._decomposition.archive import read_archive
 
-    def describe_map(self, name: str) -> OutputInfo:
-        """Return unit, range and description of a map.
+        return cls(**read_archive(path, decomposer))
 
-        Args:
-            name: A key of `maps()`.
+    def to_dict(self) -> dict[str, Any]:
+        """Summarise the maps over skin, with light and camera, in plain types for JSON.
 
-        Returns:
-            The entry of `output_info`; standard deviations have the unit of their pigment.
-        """
-        if name.endswith("_sd"):
-            unit, ends, description = self.output_info[name.removesuffix("_sd")]
-            return OutputInfo(unit, ends, f"standard deviation of: {description}")
-        return self.output_info[name.removesuffix("_r").removesuffix("_g").removesuffix("_b")]
-
-    def summary(self) -> dict[str, Any]:
-        """Summarise the maps over skin, with light and camera, as numbers for JSON.
+        It is the JSON that `skinnet predict` writes, which has `file` and `input` before it: the
+        name of the file, and its path and SHA-256.
 
         Returns:
             `id` (of the face), `faces_found`, `photo` (size), `colour_space` (`name`,
@@ -343,103 +199,20 @@ class Decomposition:
             `landmarks` (a
             list of [x, y] to a tenth of a pixel; None without a face), `light`, `camera`,
             `capture_known` (what was given of them, or a RAW file tells), `exif` (what EXIF states
-            of the shot), `version` and `model`.
+            of the shot), `provider` (what ran the networks), `version` and `model`.
         """
-        skin = self.mask > SKIN_THRESHOLD
-        height, width = skin.shape
-        names = [name for name in MAP_FILES if name != "mask"]
-        return {
-            "id": self.face_id,
-            "faces_found": self.faces_found,
-            "photo": {"width": width, "height": height},
-            "colour_space": {
-                "name": self.colour_space.name,
-                "known_from": self.colour_space.known_from,
-            },
-            "notes": list(self.notes),
-            "box": self.box._asdict(),
-            "skin_share": _round(self.skin_share),
-            "tilt": None if self.tilt is None else round(self.tilt, 1),
-            "maps": {
-                name: {"unit": self.describe_map(name).unit} | _summarise(self.get_map(name)[skin])
-                for name in names
-            },
-            "pigments": {name: self._summarise_pigment(name) for name in PIGMENTS},
-            "indices": None if (indices := self.indices()) is None else indices.to_json(),
-            "regions": {name: region.to_json() for name, region in self.regions.items()},
-            "landmarks": None if self.landmarks is None else _round_points(self.landmarks),
-            "light": _round_all(self.light),
-            "camera": _round_all(self.camera),
-            "capture_known": list(self.capture_known),
-            "exif": dict(self.exif),
-            "version": __version__,
-            "model": self.model,
-        }
+        return summarise(self)
 
-    def _summarise_region(self, region: FaceRegion) -> RegionSummary:
-        box = region.patch.box
-        read = region.patch.inside & (self.mask[box.slices] > SKIN_THRESHOLD)
-        rows, columns = np.nonzero(read)
-        log_sds = list(self.uncertainty.face)
-        if rows.size:
-            log_sds = self.uncertainty.of_region(self.box, rows + box.top, columns + box.left)
-        melanin, hemoglobin = (
-            Pigment(getattr(self, name)[box.slices], log_sd, self._find_top(name))
-            for name, log_sd in zip(PIGMENTS, log_sds, strict=True)
-        )
-        optics = self.model.get("optics")
-        return summarise_region(region, read, melanin, hemoglobin, optics)
+    def summary(self) -> dict[str, Any]:
+        """Summarise the maps: another word for `to_dict`.
 
-    @property
-    def _log_sds(self) -> dict[str, float]:
-        return dict(zip(PIGMENTS, self.uncertainty.face, strict=True))
+        Returns:
+            What `to_dict` returns.
+        """
+        return self.to_dict()
 
-    def _find_top(self, pigment: str) -> float:
-        return self.output_info[pigment].range[1]
+    def _repr_html_(self) -> str:
+        """Show it in a notebook: photograph, melanin and hemoglobin, numbers and notes."""
+        from skinnet.inference._decomposition.notebook import to_html
 
-    def _summarise_pigment(self, name: str) -> dict[str, Any]:
-        mean = self.means.get(name)
-        summary = summarise_mean(mean, self._log_sds[name], self._find_top(name))
-        rounded: dict[str, Any] = _round_all(summary)
-        return rounded
-
-    def _make_sd_map(self, pigment: str) -> NDArray[np.float32]:
-        sds = np.zeros_like(self.mask)
-        box = self.box
-        log_sd = self.uncertainty.of_pixels(pigment)
-        sds[box.slices] = resize(log_sd, box.width, box.height)
-        sds *= getattr(self, pigment)
-        return sds
-
-    def _paste(self, patches: Sequence[Patch]) -> NDArray[np.bool_]:
-        """A mask of the photograph's size."""
-        mask = np.zeros(self.mask.shape, bool)
-        for patch in patches:
-            mask[patch.box.slices] |= patch.inside
-        return mask
-
-
-def _round_points(points: NDArray[np.float32]) -> list[list[float]]:
-    return [[round(x, 1), round(y, 1)] for x, y in points.tolist()]
-
-
-def _summarise(values: NDArray[np.float32]) -> dict[str, float | None]:
-    if values.size == 0:
-        return dict.fromkeys(("mean", "std", "p5", "p95"))
-    p5, p95 = np.percentile(values, [5, 95])
-    wide = values.astype(np.float64)
-    numbers = {"mean": wide.mean(), "std": wide.std(), "p5": p5, "p95": p95}
-    return {name: _round(float(number)) for name, number in numbers.items()}
-
-
-def _round_all(numbers: Any) -> Any:
-    if isinstance(numbers, dict):
-        return {name: _round_all(value) for name, value in numbers.items()}
-    if isinstance(numbers, list):
-        return [_round(number) for number in numbers]
-    return None if numbers is None else _round(numbers)
-
-
-def _round(number: float) -> float:
-    """Six significant digits."""
-    return float(f"{number:.6g}")
+        return to_html(self)

@@ -1,12 +1,14 @@
 """Colour, typology angle, instrument indices and nearest tone of skin with given pigments."""
 
 import math
+from collections.abc import Sequence
 from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
 from skinnet.errors import InputError
+from skinnet.images._arguments import check_number
 from skinnet.inference._index_definitions import find_typology_group
 from skinnet.inference._index_summary import Index, NearestTone, SkinIndices
 from skinnet.inference._index_table import INDICES, OPTICS, look_up
@@ -92,11 +94,15 @@ def _find_indices(
 
 def _check(melanin: float, hemoglobin: float, log_sds: tuple[float, float]) -> None:
     for name, fraction in (("melanin", melanin), ("hemoglobin", hemoglobin)):
+        fraction = check_number(name, fraction)
         if not 0 <= fraction <= 1:
             raise InputError(
                 f"{name} is a volume fraction in [0, 1]; got {fraction:g}. Was it given in percent?"
             )
+    if not isinstance(log_sds, Sequence) or isinstance(log_sds, str) or len(log_sds) != 2:
+        raise InputError(f"log_sds are those of melanin and hemoglobin; got {log_sds!r:.60}.")
     for sd in log_sds:
+        sd = check_number("A standard deviation in log_sds", sd)
         if not 0 <= sd < math.inf:
             raise InputError(
                 f"log_sds are standard deviations of natural logarithms, at least 0; got {sd:g}."

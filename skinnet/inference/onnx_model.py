@@ -1,7 +1,7 @@
 """The project's ONNX files: open them, check them, and read their metadata."""
 
 import json
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, NamedTuple
@@ -12,15 +12,18 @@ from numpy.typing import NDArray
 
 from skinnet.errors import InputError
 from skinnet.files._content import explain_format
+from skinnet.images._arguments import check_path
 from skinnet.inference._onnx_header import Header
 from skinnet.inference._onnx_session import (
     REMEDY,
     RUNTIME_ERRORS,
+    check_threads,
     identify,
     name_versions,
     open_session,
 )
 from skinnet.inference._onnx_weights import check_weights
+from skinnet.inference._providers import choose_providers, shorten
 from skinnet.inference.capture import Capture
 
 ONNX_FORMAT = "2"
@@ -98,6 +101,19 @@ class OnnxModel:
     output_info: Mapping[str, OutputInfo]
     region_share: tuple[float, float]
 
+    @property
+    def provider(self) -> str:
+        """Short name of the execution provider that runs it, such as cpu or cuda."""
+        return shorten(self.session.get_providers()[0])
+
+    def describe(self) -> dict[str, str]:
+        """Describe the weights, as a `Decomposition` names its model.
+
+        Returns:
+            `version`, `trained_on` and `optics`.
+        """
+        return {"version": self.version, "trained_on": self.trained_on, "optics": self.optics}
+
     def run(self, inputs: Mapping[str, NDArray[Any]]) -> dict[str, NDArray[np.float32]]:
         """Run the network.
 
@@ -126,31 +142,39 @@ class OnnxModel:
         return dict(zip(names, values, strict=True))
 
 
-def open_model(path: Path, kind: str, threads: int | None = None) -> OnnxModel:
+def open_model(
+    path: Path,
+    kind: str,
+    threads: int | None = None,
+    providers: str | Sequence[str] | None = None,
+) -> OnnxModel:
     """Open an encoder or a decoder.
 
     Args:
         path: The ONNX file.
         kind: "encoder" or "decoder".
         threads: Number of threads; None for all cores.
+        providers: Execution providers, as for `Decomposer`; None for the CPU.
 
     Returns:
         The open model.
 
     Raises:
         InputError: The file is missing, damaged, not one of skinnet's, of another format, or of
-            the other kind.
+            the other kind; or a provider is not installed, or does not start.
 
     Example:
         >>> from skinnet.inference import SHIPPED_ENCODER, open_model
         >>> open_model(SHIPPED_ENCODER, "encoder").working_size
         160
     """
+    path, threads = check_path("A model", path), check_threads(threads)
+    chosen = choose_providers(providers)
     header = identify(path, kind)
     # First, since a file that is newer than onnxruntime says so in its metadata too.
     _check_metadata(path, kind, header)
     check_weights(path, REMEDY)
-    session = open_session(path, header, threads)
+    session = open_session(path, header, threads, chosen)
     _check_names(path, kind, session)
     return _read_metadata(path, session, header.metadata)
 

@@ -4,6 +4,8 @@ import numpy as np
 from numpy.typing import NDArray
 from PIL import Image
 
+from skinnet.errors import InputError
+from skinnet.images._arguments import check_photo
 from skinnet.images.resizing import resize
 from skinnet.inference._colour_scales import MASK, SHADING, SPECULAR, UNCERTAINTY
 from skinnet.inference._tiles import (
@@ -32,6 +34,9 @@ def draw_panel(photo: NDArray[np.uint8], decomposition: Decomposition) -> NDArra
     Returns:
         uint8 sRGB [842, 1608, 3].
 
+    Raises:
+        InputError: The photograph has another shape or type than that which was decomposed.
+
     Example:
         >>> from skimage.data import astronaut
         >>> from skinnet import Decomposer
@@ -39,6 +44,12 @@ def draw_panel(photo: NDArray[np.uint8], decomposition: Decomposition) -> NDArra
         >>> draw_panel(astronaut(), Decomposer()(astronaut())).shape
         (842, 1608, 3)
     """
+    if check_photo(photo).shape[:2] != decomposition.mask.shape:
+        height, width = decomposition.mask.shape
+        raise InputError(
+            f"The photograph of this decomposition has {width} x {height} pixels; got one of "
+            f"{photo.shape[1]} x {photo.shape[0]}."
+        )
     box = decomposition.box.slices
     mask = decomposition.mask[box]
     tiles = (

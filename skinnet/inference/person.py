@@ -8,6 +8,7 @@ import numpy as np
 
 from skinnet._version import __version__
 from skinnet.errors import InputError
+from skinnet.images._arguments import check_text
 from skinnet.images.faces._face_regions import REGION_NAMES
 from skinnet.inference._agreement import (
     describe_outlier,
@@ -17,6 +18,7 @@ from skinnet.inference._agreement import (
     note_sessions,
     number_sessions,
 )
+from skinnet.inference._decomposition.summary import round_all
 from skinnet.inference._fused_pigment import FusedPigment, FusedRegion, make_pigment
 from skinnet.inference._fusion import SHARED, Fusion
 from skinnet.inference._index_summary import SkinIndices
@@ -29,7 +31,7 @@ from skinnet.inference._uncertainty import (
     find_interval,
     summarise_mean,
 )
-from skinnet.inference.decomposition import Decomposition, _round_all
+from skinnet.inference.decomposition import Decomposition
 from skinnet.inference.indices import _find_indices
 
 
@@ -103,9 +105,13 @@ class Person:
             >>> low < person.regions["nose"].melanin.mean < high
             True
         """
+        if not isinstance(shots, Iterable) or isinstance(shots, np.ndarray):
+            raise InputError(f"shots are a list of decompositions; got {shots!r:.60}.")
         read = [describe_shot(each, f"shot {number}") for number, each in enumerate(shots, 1)]
         if names is not None:
-            called = tuple(names)
+            if not isinstance(names, Iterable) or isinstance(names, str):
+                raise InputError(f"names are a list of texts; got {names!r:.60}.")
+            called = tuple(check_text("The name of a shot", name) for name in names)
             if len(called) != len(read):
                 raise InputError(
                     f"There are {len(read)} shots and {len(called)} names; give each shot one name."
@@ -277,7 +283,7 @@ def _summarise(shot: PersonShot) -> dict[str, Any]:
         for name, value, log_sd, top in rows
     }
     return {
-        "pigments": _round_all(pigments),
+        "pigments": round_all(pigments),
         "capture_known": list(shot.capture_known),
         "notes": list(shot.notes),
     }

@@ -1,5 +1,6 @@
 """`skinnet build-model`: maps of many people to a hybrid, a linear and a joint model."""
 
+import json
 import shutil
 from dataclasses import dataclass
 from pathlib import Path
@@ -16,7 +17,7 @@ from skinnet.appearance.measures import Measures, measure
 from skinnet.appearance.stack import SubjectStack
 from skinnet.errors import InputError, _check_count
 from skinnet.images._result_names import OUTPUT
-from skinnet.inference._messages import print_line
+from skinnet.inference._messages import log
 from skinnet.pipeline._model_inputs import find_maps, read_mask, read_shape, stack_subjects
 from skinnet.pipeline._model_results import (
     JOINT,
@@ -25,12 +26,14 @@ from skinnet.pipeline._model_results import (
     make_renderer,
     write_models,
 )
-from skinnet.pipeline._output import add_output, make_output_folder
-from skinnet.pipeline._progress import log
+from skinnet.pipeline._output import add_json, add_output, make_output_folder, print_result
 from skinnet.pipeline._scans import ScanOptions
 from skinnet.pipeline._source import Source, choose_folder
 
 MODEL_FOLDER = Path("skinmodel")
+
+RENAMED = {"model": "appearance"}
+"""The group of settings, and its earlier name."""
 
 
 @dataclass(frozen=True)
@@ -72,9 +75,14 @@ def add_arguments(parser: ArgumentParser) -> None:
         type=Path,
         help=f"NAME_maps.npz files or folders of them; by default the folder {OUTPUT}.",
     )
-    parser.add_class_arguments(ModelSettings, "model")
+    parser.add_class_arguments(ModelSettings, "appearance")
     parser.add_argument(
-        "--joint", type=bool, default=False, help="Build a model of shape and appearance too."
+        "--joint",
+        type=bool,
+        nargs="?",
+        const=True,
+        default=False,
+        help="Build a model of shape and appearance too.",
     )
     parser.add_argument(
         "--shape",
@@ -86,9 +94,10 @@ def add_arguments(parser: ArgumentParser) -> None:
         "--shape_landmarks",
         type=Path | None,
         default=None,
-        help="Landmarks of that model, as --model_landmarks of skinnet maps.",
+        help="Landmarks of that model, as --shape-landmarks of skinnet maps.",
     )
     add_output(parser, str(MODEL_FOLDER))
+    add_json(parser, "The measures")
 
 
 def run(config: Namespace) -> int:
@@ -99,17 +108,19 @@ def run(config: Namespace) -> int:
     folder = choose_folder(config.output, MODEL_FOLDER, names, source)
     output = make_output_folder(folder)
     stack = stack_subjects(files, output / "stack")
-    mask = _choose_texels(stack, config.model)
-    hybrid, linear = _fit_models(stack, mask, config.model)
-    measures = [_measure_model(model, stack, config.model) for model in (hybrid, linear)]
+    mask = _choose_texels(stack, config.appearance)
+    hybrid, linear = _fit_models(stack, mask, config.appearance)
+    measures = [_measure_model(model, stack, config.appearance) for model in (hybrid, linear)]
     joint = None
     if config.joint:
         options = ScanOptions(config.shape, config.shape_landmarks)
-        joint, joint_measures = _fit_joint(files, stack, hybrid, options, config.model)
+        joint, joint_measures = _fit_joint(files, stack, hybrid, options, config.appearance)
         measures.append(joint_measures)
     write_models(output, hybrid, linear, joint, measures, make_renderer(files), source)
     shutil.rmtree(stack.folder)
-    print_line(f"{output}: {len(files)} subjects; {describe_measures(measures)}")
+    line = f"{output}: {len(files)} subjects; {describe_measures(measures)}"
+    record = json.loads((output / "measures.json").read_text(encoding="utf-8"))
+    print_result(line, record, [output / name for name in names], config.json)
     return 0
 
 

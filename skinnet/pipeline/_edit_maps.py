@@ -1,6 +1,7 @@
 """`skinnet edit-maps`: scale, add to or paint pigments, and render the face again."""
 
 from collections.abc import Mapping
+from dataclasses import asdict
 from pathlib import Path
 
 import numpy as np
@@ -16,7 +17,7 @@ from skinnet.errors import InputError
 from skinnet.images._png_file import write_png
 from skinnet.images._result_names import choose_stem
 from skinnet.images.photograph import read_photo
-from skinnet.inference._messages import print_line
+from skinnet.inference._messages import log
 from skinnet.inference._tiles import draw_grid, draw_picture
 from skinnet.mesh.mesh_file import read_mesh, write_mesh
 from skinnet.pipeline._maps_writer import (
@@ -29,10 +30,11 @@ from skinnet.pipeline._output import (
     EDIT_ENDS,
     MAPS_END,
     add_end,
+    add_json,
     add_output,
     make_output_folder,
+    print_result,
 )
-from skinnet.pipeline._progress import log
 from skinnet.pipeline._source import Source
 from skinnet.pipeline.relight import RelightSettings
 from skinnet.render.scene import Scene
@@ -71,6 +73,7 @@ def add_arguments(parser: ArgumentParser) -> None:
     )
     parser.add_class_arguments(RelightSettings, "relight")
     add_output(parser, "the folder of the maps")
+    add_json(parser, "What was made")
 
 
 def run(config: Namespace) -> int:
@@ -90,6 +93,7 @@ def run(config: Namespace) -> int:
     save_maps(add_end(stem, MAPS_END), after, colour, source.describe(_VERB, "maps", folder))
     write_png(add_end(stem, "_albedo.png"), show_albedo(after.albedo(colour), after), text)
     rows = _draw_rows(before, after, colour)
+    ends = [MAPS_END, "_albedo.png", "_panel.png"]
     mesh = config.maps.with_name(f"{name}_face.obj")
     if mesh.is_file():
         for row, rendered in zip(
@@ -98,11 +102,18 @@ def run(config: Namespace) -> int:
             strict=True,
         ):
             row.append(rendered)
+        ends += [end for end in EDIT_ENDS if end not in ends]
     else:
         log(f"There is no {mesh} to render on; the albedo alone is written.")
     panel = draw_grid([tile for row in rows for tile in row], len(rows[0]))
     write_png(add_end(stem, "_panel.png"), panel, text)
-    print_line(f"{config.maps}: {stem}_maps.npz, _albedo.png, _panel.png")
+    record = {
+        **source.describe(_VERB, "edit", folder),
+        "melanin": asdict(melanin),
+        "hemoglobin": asdict(hemoglobin),
+    }
+    line = f"{config.maps}: {stem}_maps.npz, _albedo.png, _panel.png"
+    print_result(line, record, [add_end(stem, end) for end in ends], config.json)
     return 0
 
 

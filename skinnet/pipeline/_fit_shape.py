@@ -1,5 +1,6 @@
 """`skinnet fit-shape`: a shape model fitted to scans."""
 
+import json
 from dataclasses import asdict, dataclass
 from pathlib import Path
 from typing import Any
@@ -10,14 +11,15 @@ from jsonargparse import ArgumentParser, Namespace
 from skinnet.errors import InputError
 from skinnet.images._png_file import write_png
 from skinnet.images._result_names import lock_folder
-from skinnet.inference._messages import print_line
+from skinnet.inference._messages import log
 from skinnet.mesh.mesh import Mesh
 from skinnet.mesh.mesh_file import write_mesh
 from skinnet.pipeline._fit_archive import load_fit, save_fit
 from skinnet.pipeline._fit_picture import draw_fit
-from skinnet.pipeline._output import add_end
-from skinnet.pipeline._progress import compute_fingerprint, log, read_finished, write_record
+from skinnet.pipeline._output import add_end, print_result
+from skinnet.pipeline._progress import compute_fingerprint, read_finished, write_record
 from skinnet.pipeline._scans import (
+    RENAMED,
     Scan,
     ScanOptions,
     add_scan_arguments,
@@ -31,6 +33,8 @@ from skinnet.pipeline.initial_pose import find_initial_pose
 from skinnet.shape.fit_settings import FitSettings
 from skinnet.shape.model import ShapeModel
 from skinnet.shape.registration import Registration, register
+
+__all__ = ["RENAMED", "add_arguments", "run"]
 
 _NO_FACE_MM = 10.0
 """RMS distance of the kept vertices in mm above which no face was found."""
@@ -71,7 +75,9 @@ def run(config: Namespace) -> int:
 
     def process(path: Path) -> None:
         fitted = fit_scan(path, model, options, config.output, config.fit)
-        print_line(describe_fit(fitted))
+        files = [add_end(fitted.stem, end) for end in _ENDS]
+        record = json.loads(files[-1].read_text(encoding="utf-8"))
+        print_result(describe_fit(fitted), record, files, config.json)
 
     return process_scans(config.scan, options, config.output, process)
 
@@ -90,7 +96,7 @@ def fit_scan(
     stem = make_output_stem(source, output)
     marks = {} if scan.landmarks is None else scan.landmarks
     points = {name: point.tolist() for name, point in marks.items()}
-    fingerprint = compute_fingerprint(path, options.model or "default", points, settings)
+    fingerprint = compute_fingerprint(path, options.shape or "default", points, settings)
     archive, mesh, picture, record = (add_end(stem, end) for end in _ENDS)
     if read_finished(record, fingerprint, [archive, mesh, picture]) is not None:
         log(f"{archive} is there already and is kept.")
@@ -113,7 +119,7 @@ def write_fit(fitted: FittedScan, model: ShapeModel) -> None:
     if summary["rms_deviations"] > _UNLIKELY_SHAPE:
         log(
             f"{fitted.scan.path}: the fitted shape is unlikely under {model.name}; look at "
-            f"{picture}, and give a model of real faces with --model."
+            f"{picture}, and give a model of real faces with --shape."
         )
     text = fitted.source.make_mark(_VERB, "shape").to_text()
     origin = fitted.source.describe(_VERB, "shape", fitted.stem.parent)

@@ -10,12 +10,12 @@ from jaxtyping import Float
 from jsonargparse import ArgumentParser, Namespace
 
 from skinnet.appearance.skin_texture import SkinTexture
-from skinnet.inference._messages import print_line
+from skinnet.inference._messages import log
 from skinnet.pipeline._fit_shape import FittedScan, fit_scan
 from skinnet.pipeline._maps_writer import MAPS_ENDS, write_maps
-from skinnet.pipeline._output import add_end
-from skinnet.pipeline._progress import compute_fingerprint, log, read_finished, write_record
-from skinnet.pipeline._scans import add_scan_arguments, collect_options, process_scans
+from skinnet.pipeline._output import add_end, print_result
+from skinnet.pipeline._progress import compute_fingerprint, read_finished, write_record
+from skinnet.pipeline._scans import RENAMED, add_scan_arguments, collect_options, process_scans
 from skinnet.pipeline._warp_scan import make_texture_space, warp_scan
 from skinnet.pipeline.calibrate import CalibratedColours, ColourSettings
 from skinnet.pipeline.texture_inversion import invert_texture
@@ -23,6 +23,10 @@ from skinnet.pipeline.texture_space import WarpSettings, embed_model
 from skinnet.shape.fit_settings import FitSettings
 from skinnet.shape.model import ShapeModel
 from skinnet.texture.warp import WarpedTexture
+
+__all__ = ["RENAMED", "add_arguments", "run"]
+
+_RECORD_END = "_maps.json"
 
 _DOUBTFUL_SHARE = 0.5
 """Share of texels whose colour is off the skin manifold above which maps are doubtful."""
@@ -66,14 +70,21 @@ def run(config: Namespace) -> int:
         return code
     colours = config.colour.calibrate([scan.colours for scan in scans])
     for scan, exposure in zip(scans, colours.calibration.exposures, strict=True):
-        write_scan_maps(scan, exposure, model, colours)
+        record = write_scan_maps(scan, exposure, model, colours)
+        path, stem = scan.fitted.scan.path, scan.fitted.stem
+        files = [add_end(stem, end) for end in (*MAPS_ENDS, _RECORD_END)]
+        print_result(describe_maps(path, stem, record), record, files, config.json)
     return code
 
 
 def write_scan_maps(
     scan: WarpedScan, exposure: float, model: ShapeModel, colours: CalibratedColours
-) -> None:
-    """Invert the texture of a scan and write its maps, unless the same inputs gave them before."""
+) -> dict[str, Any]:
+    """Invert the texture of a scan and write its maps, unless the same inputs gave them before.
+
+    Returns:
+        The record of the maps.
+    """
     path, stem = scan.fitted.scan.path, scan.fitted.stem
     fingerprint = compute_fingerprint(
         scan.fitted.fingerprint,
@@ -82,27 +93,33 @@ def write_scan_maps(
         colours.settings,
         colours.colour.to_record(),
     )
-    record = add_end(stem, "_maps.json")
+    record = add_end(stem, _RECORD_END)
     files = [add_end(stem, end) for end in MAPS_ENDS]
-    if read_finished(record, fingerprint, files) is not None:
+    finished = read_finished(record, fingerprint, files)
+    if finished is not None:
         log(f"{files[0]} is there already and is kept.")
-        return
+        return finished
     texture, off_manifold = invert_texture(scan.warped, exposure, colours, str(path))
     source = scan.fitted.source
     write_maps(stem, texture, colours.colour, scan.fitted.mesh(model), source)
     summary = summarise_maps(scan, texture, off_manifold, exposure, colours)
-    write_record(record, fingerprint, source.describe("maps", "summary", stem.parent) | summary)
     if off_manifold > _DOUBTFUL_SHARE:
         log(
             f"{path}: {off_manifold:.0%} of the texels have a colour that skin cannot have, so "
             "their pigments are doubtful; name the light and camera (--colour.light, .camera) or "
             "something white in the texture (--colour.white)."
         )
-    mean = ", ".join(f"{name} {summary[name]['median']:.3g}" for name in ("melanin", "hemoglobin"))
-    print_line(
-        f"{path}: median {mean}; {off_manifold:.1%} of the texels have a colour that skin cannot "
-        "have; "
-        f"{stem}_maps.npz, _panel.png, _face.obj",
+    return write_record(
+        record, fingerprint, source.describe("maps", "summary", stem.parent) | summary
+    )
+
+
+def describe_maps(path: Path, stem: Path, record: dict[str, Any]) -> str:
+    """Describe the maps of a scan in one line."""
+    mean = ", ".join(f"{name} {record[name]['median']:.3g}" for name in ("melanin", "hemoglobin"))
+    return (
+        f"{path}: median {mean}; {record['off_manifold']:.1%} of the texels have a colour that "
+        f"skin cannot have; {stem}_maps.npz, _panel.png, _face.obj"
     )
 
 

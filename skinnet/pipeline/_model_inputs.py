@@ -12,9 +12,10 @@ from skinnet.appearance.stack import SubjectStack
 from skinnet.appearance.stack_writer import write_stack
 from skinnet.errors import InputError
 from skinnet.images.photograph import read_photo
+from skinnet.inference._messages import log
 from skinnet.pipeline._fit_archive import load_fit
 from skinnet.pipeline._output import MAPS_END
-from skinnet.pipeline._progress import compute_fingerprint, log
+from skinnet.pipeline._progress import compute_fingerprint
 from skinnet.pipeline._source import read_result_mark
 
 

@@ -1,10 +1,14 @@
 """The folder that a verb writes into, and the names of its files."""
 
+import json
+from collections.abc import Iterable, Mapping
 from pathlib import Path
+from typing import Any
 
 from jsonargparse import ArgumentParser
 
 from skinnet.files import make_folder
+from skinnet.inference._messages import print_line
 
 MAPS_END = "_maps.npz"
 """End of the name of a file of maps."""
@@ -30,6 +34,29 @@ def add_output(parser: ArgumentParser, default: str) -> None:
     parser.add_argument(
         "-o", "--output", type=Path | None, default=None, help=f"Folder; by default {default}."
     )
+
+
+def add_json(parser: ArgumentParser, what: str) -> None:
+    """Add the flag for results in JSON."""
+    parser.add_argument(
+        "--json", action="store_true", help=f"Print {what.lower()} as one line of JSON, no text."
+    )
+
+
+def print_result(
+    line: str, record: Mapping[str, Any], files: Iterable[Path], as_json: bool
+) -> None:
+    """Print what a verb has made, as a line for people or as one line of JSON.
+
+    Args:
+        line: The line for people.
+        record: The numbers.
+        files: The files that were written, which JSON lists after the numbers.
+        as_json: Whether JSON is asked for.
+    """
+    if as_json:
+        line = json.dumps({**record, "files": [str(file) for file in files]}, allow_nan=False)
+    print_line(line)
 
 
 def add_end(stem: Path, end: str) -> Path:

@@ -1,4 +1,4 @@
-"""The log, and records of finished steps, which are not repeated."""
+"""Records of finished steps, which are not repeated."""
 
 import hashlib
 import json
@@ -9,12 +9,6 @@ from typing import Any
 
 from skinnet.files import write_text
 from skinnet.files._reading import read_file
-from skinnet.inference import _messages
-
-
-def log(text: str) -> None:
-    """Print a line of progress to standard error; standard output holds results alone."""
-    _messages.log(text)
 
 
 def compute_fingerprint(*parts: object) -> str:

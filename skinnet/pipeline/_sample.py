@@ -11,11 +11,16 @@ from skinnet.appearance.maps_file import save_maps
 from skinnet.appearance.skin_texture import SkinTexture
 from skinnet.errors import InputError, _check_count
 from skinnet.images._png_file import write_png
-from skinnet.inference._messages import print_line
 from skinnet.inference._tiles import draw_grid, draw_picture
 from skinnet.pipeline._build_model import MODEL_FOLDER
 from skinnet.pipeline._maps_writer import draw_pigments, show_albedo
-from skinnet.pipeline._output import MAPS_END, add_output, make_output_folder
+from skinnet.pipeline._output import (
+    MAPS_END,
+    add_json,
+    add_output,
+    make_output_folder,
+    print_result,
+)
 from skinnet.pipeline._source import Source, choose_folder
 
 _VERB = "sample"
@@ -35,6 +40,7 @@ def add_arguments(parser: ArgumentParser) -> None:
         help="Factor on the standard deviations of the model; 0 gives the mean face.",
     )
     add_output(parser, "samples beside the model")
+    add_json(parser, "What was made")
 
 
 def run(config: Namespace) -> int:
@@ -59,10 +65,17 @@ def run(config: Namespace) -> int:
         save_maps(output / f"{stem}{MAPS_END}", texture, model.colour, origin)
         write_png(output / f"{stem}_albedo.png", albedo, text)
     write_png(output / "samples.png", _draw_samples(textures, albedos), text)
-    print_line(
-        f"{output}: {config.count} faces, {model.measure_clamping(betas):.2%} of their texels "
-        "clipped to a fraction in [0, 1]; sample_*_maps.npz, sample_*_albedo.png, samples.png",
+    clipped = model.measure_clamping(betas)
+    line = (
+        f"{output}: {config.count} faces, {clipped:.2%} of their texels clipped to a fraction in "
+        "[0, 1]; sample_*_maps.npz, sample_*_albedo.png, samples.png"
     )
+    record = {
+        **source.describe(_VERB, "skin", output),
+        **{key: config[key] for key in ("count", "seed", "spread")},
+        "clipped": float(clipped),
+    }
+    print_result(line, record, [output / name for name in (*names, "samples.png")], config.json)
     return 0
 
 

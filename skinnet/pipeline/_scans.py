@@ -12,16 +12,19 @@ from jsonargparse import ArgumentParser, Namespace
 
 from skinnet.errors import InputError
 from skinnet.images._result_names import OUTPUT, choose_stem
+from skinnet.inference._messages import log, report
 from skinnet.mesh.mesh import Mesh
 from skinnet.mesh.mesh_file import read_mesh
 from skinnet.mesh.repair import repair_mesh
-from skinnet.pipeline._output import SCAN_ENDS, add_output, make_output_folder
-from skinnet.pipeline._progress import log
+from skinnet.pipeline._output import SCAN_ENDS, add_json, add_output, make_output_folder
 from skinnet.pipeline._source import Source, find_result_verb
 from skinnet.shape._landmark_check import check_landmarks
 from skinnet.shape.landmarks import read_landmarks
 from skinnet.shape.model import ShapeModel
 from skinnet.shape.model_formats import load_shape_model
+
+RENAMED = {"model_landmarks": "shape_landmarks", "model": "shape"}
+"""Flags and keys of earlier versions, and their new names."""
 
 _LANDMARK_ENDS = (".ljson", ".pp", "_landmarks.csv", "_landmarks.json")
 """Ends of the names of landmark files beside NAME.obj."""
@@ -32,23 +35,23 @@ class ScanOptions:
     """The shape model, and the files that belong to a scan.
 
     Args:
-        model: Shape model: ICT-FaceKit (folder or .npz), Basel Face Model (.mat, .h5),
+        shape: Shape model: ICT-FaceKit (folder or .npz), Basel Face Model (.mat, .h5),
             skinnet's .npz, or a folder of registered meshes; by default the procedural face.
-        model_landmarks: .json of names and vertex numbers, for a model without landmarks.
+        shape_landmarks: .json of names and vertex numbers, for a model without landmarks.
         landmarks: Points of the scan (.ljson, .csv, .json, .pp); by default NAME.ljson, NAME.pp,
             NAME_landmarks.csv or .json beside it. Without landmarks, the face is detected in a
             picture from the front.
         texture: The scan's picture, if the mesh does not name it.
     """
 
-    model: Path | None = None
-    model_landmarks: Path | None = None
+    shape: Path | None = None
+    shape_landmarks: Path | None = None
     landmarks: Path | None = None
     texture: Path | None = None
 
     def load_model(self) -> ShapeModel:
         """Load the shape model."""
-        return load_shape_model(self.model, self.model_landmarks)
+        return load_shape_model(self.shape, self.shape_landmarks)
 
 
 @dataclass(frozen=True)
@@ -119,7 +122,7 @@ def process_scans(
         try:
             action(path)
         except InputError as error:
-            log(f"skinnet: {error}")
+            report(error)
             code = 2
     return code
 
@@ -156,6 +159,7 @@ def add_scan_arguments(parser: ArgumentParser) -> None:
     parser.add_argument("scan", nargs="+", type=Path, help="Meshes: OBJ, PLY, glTF, GLB or STL.")
     parser.add_class_arguments(ScanOptions)
     add_output(parser, "skinmaps beside the scan")
+    add_json(parser, "The summary of each scan")
 
 
 def collect_options(config: Namespace) -> ScanOptions:

@@ -13,6 +13,7 @@ from jsonargparse import ArgumentParser, get_loader, set_dumper, set_loader
 from skinnet.errors import InputError
 from skinnet.files._reading import read_stream
 from skinnet.files._settings import MOST_SETTINGS, check_yaml, parse_settings, read_settings
+from skinnet.pipeline._sentences import write_sentence
 
 _MODE = "bounded yaml"
 _SETTINGS = (".yaml", ".yml", ".json")
@@ -33,9 +34,9 @@ set_dumper(_MODE, _dump)
 
 
 class SentenceParser(ArgumentParser):
-    """A parser that reports an error in one sentence, without listing all options.
+    """A parser that reports an error in one sentence, without listing all flags.
 
-    `help_command` lists the options; by default it is the parser's program with `--help`.
+    `help_command` lists the flags; by default it is the parser's program with `--help`.
     `renamed` maps keys and class names of earlier versions to their present names. An error about
     an old name then gives the new one.
 
@@ -58,7 +59,9 @@ class SentenceParser(ArgumentParser):
     def __init__(self, *args: Any, **kwargs: Any) -> None:
         super().__init__(*args, **{"parser_mode": _MODE} | kwargs)
 
-    def parse_args(self, args: Sequence[str] | None = None, *more: Any, **kwargs: Any) -> Any:
+    def parse_args(  # type: ignore[override]
+        self, args: Sequence[str] | None = None, *more: Any, **kwargs: Any
+    ) -> Any:
         """Parse arguments, whose files of settings are checked first.
 
         Args:
@@ -92,9 +95,10 @@ class SentenceParser(ArgumentParser):
             # A key stands after a quote, dashes or a colon, perhaps as the end of a longer path.
             if re.search(rf"""(?:['"]|--|: )(?:\w+\.)*{re.escape(old)}(?=[.'"=\s]|$)""", message):
                 raise InputError(f"'{old}' is now called '{new}'; use the new name.") from ex
-        sentence = " ".join(message.split())
+        keys = [each.dest for each in self._actions]
+        sentence = write_sentence(" ".join(message.split()), self.prog, keys)
         help_command = self.help_command or f"{self.prog} --help"
-        raise InputError(f"{sentence} ({help_command} lists the options)") from ex
+        raise InputError(f"{sentence} ({help_command} lists the flags)") from ex
 
 
 def _list_settings(arguments: Sequence[str]) -> Iterator[str]:

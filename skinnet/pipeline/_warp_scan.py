@@ -7,9 +7,10 @@ import numpy as np
 from skinnet.errors import InputError
 from skinnet.files import READ_ERRORS, write_atomically
 from skinnet.files._npz import read_npz
+from skinnet.inference._messages import log
 from skinnet.pipeline._fit_shape import FittedScan
 from skinnet.pipeline._output import add_end
-from skinnet.pipeline._progress import compute_fingerprint, log, read_finished, write_record
+from skinnet.pipeline._progress import compute_fingerprint, read_finished, write_record
 from skinnet.pipeline.texture_space import WarpSettings
 from skinnet.shape.model import ShapeModel
 from skinnet.texture.projection import project_texture

@@ -17,11 +17,11 @@ from skinnet.calibration.colour_transform import calibrate
 from skinnet.errors import InputError, _check_count
 from skinnet.files._reading import MOST_TEXT, read_file
 from skinnet.images.srgb import srgb_to_linear
+from skinnet.inference._messages import log
 from skinnet.physics.inversion import SkinInverse, _check_axis
 from skinnet.physics.optics import SkinOptics
 from skinnet.physics.reflectance import SkinReflectance
 from skinnet.physics.sources import load_spectrum_to_srgb
-from skinnet.pipeline._progress import log
 
 _WAYS = ("exposure", "common", "full", "none")
 _NODES = (256, 256)

@@ -41,7 +41,7 @@ def no_extras(monkeypatch: pytest.MonkeyPatch) -> None:
 def test_the_content_decides_and_not_the_ending(run: Run, tmp_path: Path, name: str) -> None:
     save(tmp_path / "g" / name, format_="JPEG")
     code, _, err = run("predict", tmp_path / "g", "-o", tmp_path / "out")
-    assert code == 0 and "1 read, 0 passed over, 0 could not be read" in err
+    assert code == 0 and "1 photograph, 1 face read, 0 not read" in err
     (melanin,) = read_melanin(tmp_path / "out").values()
     assert melanin == pytest.approx(0.2, abs=0.005)
 
@@ -53,7 +53,7 @@ def test_every_format_is_known_by_its_content(
 ) -> None:
     save(tmp_path / "g" / name, format_=format_)
     code, _, err = run("predict", tmp_path / "g", "-o", tmp_path / "out")
-    assert code == 0 and "1 read, 0 passed over" in err
+    assert code == 0 and "1 photograph, 1 face read, 0 not read" in err
     (melanin,) = read_melanin(tmp_path / "out").values()
     assert melanin == pytest.approx(0.2, abs=0.01)
 
@@ -66,7 +66,7 @@ def test_heic_is_read_with_its_extra(run: Run, tmp_path: Path, name: str) -> Non
     picture.save(tmp_path / "g" / "x.heic", quality=-1, chroma=444)
     (tmp_path / "g" / "x.heic").rename(tmp_path / "g" / name)
     code, _, err = run("predict", tmp_path / "g", "-o", tmp_path / "out")
-    assert code == 0 and "1 read, 0 passed over" in err
+    assert code == 0 and "1 photograph, 1 face read, 0 not read" in err
     (melanin,) = read_melanin(tmp_path / "out").values()
     assert melanin == pytest.approx(0.2, abs=0.005)
 
@@ -93,7 +93,7 @@ def test_other_kinds_are_passed_over_by_name(run: Run, tmp_path: Path, kind: str
     code, _, err = run("predict", tmp_path / "g", "-o", tmp_path / "out")
     count = len(KINDS[kind])
     assert code == 0
-    assert f"1 read, {count} passed over, 0 could not be read" in err
+    assert f"1 photograph, 1 face read, 0 not read, {count} passed over" in err
     assert f"Passed over: {count} {kind}{'s' * (count > 1)} (" in err
     assert read_melanin(tmp_path / "out") == {"photo.json": 0.2}
 
@@ -137,7 +137,7 @@ def test_what_only_looks_like_a_picture_could_not_be_read(
     code, _, err = run("predict", tmp_path / "g", "-o", tmp_path / "out")
     sentence, count = err.splitlines()
     assert code == 2 and sentence.startswith(f"skinnet: {tmp_path / 'g' / name} ")
-    assert count == "skinnet: 1 read, 0 passed over, 1 could not be read."
+    assert count.startswith("skinnet: 1 photograph, 1 face read, 1 not read, ")
     assert read_melanin(tmp_path / "out") == {"photo.json": 0.2}
 
 
@@ -154,7 +154,8 @@ def test_what_file_managers_leave_is_no_noise(
     save(tmp_path / "g" / name, DARK, "JPEG")
     code, _, err = run("predict", tmp_path / "g", "-o", tmp_path / "out", *options)
     assert code == 0
-    assert err == "skinnet: 1 read, 0 passed over, 0 could not be read.\n"
+    assert err.startswith("skinnet: 1 photograph, 1 face read, 0 not read, ")
+    assert "passed over" not in err and err.count("\n") == 1
     assert read_melanin(tmp_path / "out") == {"a.json": 0.2}
 
 
@@ -173,7 +174,7 @@ def test_subfolders_are_counted_or_read(run: Run, tmp_path: Path) -> None:
     assert code == 0 and "further pictures, 4 in 3 subfolders; --recursive reads them too" in err
     assert list(read_melanin(tmp_path / "out")) == ["a.json"]
     code, _, err = run("predict", tmp_path / "g", "-r", "-o", tmp_path / "out")
-    assert code == 0 and "5 read, 1 passed over, 0 could not be read" in err
+    assert code == 0 and "5 photographs, 5 faces read, 0 not read, 1 passed over" in err
     assert list(read_melanin(tmp_path / "out")) == [f"{each}.json" for each in "abcde"]
 
 
@@ -189,7 +190,7 @@ def test_loops_of_links_end(run: Run, tmp_path: Path, target: str) -> None:
     save(tmp_path / "g" / "1" / "a.png")
     (tmp_path / "g" / "1" / "loop").symlink_to(target)
     code, _, err = run("predict", tmp_path / "g", "-r", "-o", tmp_path / "out")
-    assert code == 0 and "1 read," in err
+    assert code == 0 and "1 face read, " in err
     assert list(read_melanin(tmp_path / "out")) == ["a.json"]
 
 
@@ -218,7 +219,7 @@ def test_what_is_no_file_does_not_stop_the_others(
     code, _, err = run("predict", ".", "-o", tmp_path / "out")
     broken = kind in ("link", "loop") and name == "z.jpg"
     assert code == (2 if broken else 0) and "z" in err
-    assert ("1 could not be read" if broken else "1 passed over, 0 could not") in err
+    assert ("1 not read" if broken else "0 not read, 1 passed over") in err
     assert read_melanin(tmp_path / "out") == {"a.json": 0.2}
     code, _, err = run("predict", name)
     assert code == 2 and len(err.splitlines()) == 1 and name in err
@@ -239,7 +240,7 @@ def test_folders_that_cannot_be_listed_are_named(
     monkeypatch.setattr(os, "listdir", refuse)
     code, _, err = run("predict", tmp_path / "g", "-r", "-o", tmp_path / "out")
     assert code == 2 and "locked cannot be read (Permission denied)" in err
-    assert "1 read, 0 passed over, 1 could not be read" in err
+    assert "1 photograph, 1 face read, 1 not read" in err
 
 
 @pytest.mark.parametrize("name", [b"\xff.jpg", b"\xe9t\xe9", b"a\xffb.png"])
@@ -249,7 +250,7 @@ def test_names_that_are_not_unicode_are_read(run: Run, tmp_path: Path, name: byt
     os.rename(os.fsencode(tmp_path / "a.png"), os.path.join(os.fsencode(tmp_path / "g"), name))
     for options in ([], ["--json"]):
         code, _, err = run("predict", tmp_path / "g", "-o", tmp_path / "out", *options)
-        assert code == 0 and "1 read, 0 passed over" in err
+        assert code == 0 and "1 photograph, 1 face read, 0 not read" in err
     assert list(read_melanin(tmp_path / "out").values()) == [0.2]
 
 
@@ -267,7 +268,10 @@ def test_a_file_is_read_once(
     for inputs in (["g/a.png", *others], ["g", *others]):
         code, out, err = run("predict", *inputs, "-o", "out")
         assert code == 0 and len(out.splitlines()) == 1
-        assert f"1 read, {len(others)} passed over" in err and "second names of files" in err
+        assert (
+            f"1 photograph, 1 face read, 0 not read, {len(others)} passed over" in err
+            and "second names of files" in err
+        )
     assert list(read_melanin(tmp_path / "out")) == ["a.json"]
 
 
@@ -275,7 +279,7 @@ def test_a_folder_is_read_once(run: Run, tmp_path: Path) -> None:
     save(tmp_path / "g" / "a.png")
     (tmp_path / "link").symlink_to("g")
     code, _, err = run("predict", tmp_path / "g", tmp_path / "link", tmp_path / "g")
-    assert code == 0 and "1 read, 2 passed over, 0 could not be read" in err
+    assert code == 0 and "1 photograph, 1 face read, 0 not read, 2 passed over" in err
 
 
 PATTERNS = {
@@ -302,7 +306,7 @@ def test_a_pattern_that_no_shell_has_expanded(
     monkeypatch.chdir(tmp_path / "g")
     code, _, err = run("predict", pattern, "-o", tmp_path / "out")
     found = PATTERNS[pattern]
-    assert code == 0 and f"{len(found)} read" in err and "0 could not be read" in err
+    assert code == 0 and f"{len(found)} faces read, 0 not read" in err
     assert list(read_melanin(tmp_path / "out")) == [f"{each}.json" for each in found]
 
 
@@ -340,8 +344,8 @@ def test_edit_takes_a_pattern_of_one_match(run: Run, tmp_path: Path) -> None:
     code, _, err = run("edit", tmp_path / "*.txt")
     assert code == 2
     save(tmp_path / "b.png")
-    code, _, err = run("edit", tmp_path / "*.png")
-    assert code == 2 and "matches 2 photographs; give one of them" in err
+    code, _, err = run("edit", tmp_path / "*.png", "-o", tmp_path / "out.png")
+    assert code == 2 and "out.png would be one picture, and 2 photographs are edited" in err
 
 
 @pytest.mark.parametrize("suffix", ["gif", "png", "webp", "tif"])
@@ -427,10 +431,11 @@ def test_the_end_of_a_run_counts(run: Run, tmp_path: Path) -> None:
     assert [json.loads(line)["file"] for line in out.splitlines()] == [
         str(folder / name) for name in ("a.png", "b", "copy.jpe")
     ]
-    assert err.splitlines()[-1] == (
-        "skinnet: 3 read, 2 passed over, 1 without a face, 2 could not be read. "
-        "Passed over: 1 RAW file (c.nef); 1 other file (e.txt)."
+    assert err.splitlines()[-1].startswith(
+        "skinnet: 3 photographs, 3 faces read, 3 not read (2 could not be read, 1 without a face), "
+        "2 passed over, "
     )
+    assert err.endswith("Passed over: 1 RAW file (c.nef); 1 other file (e.txt).\n")
 
 
 def test_one_plain_file_needs_no_count(run: Run, tmp_path: Path) -> None:

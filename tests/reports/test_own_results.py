@@ -18,6 +18,7 @@ Run = Callable[..., tuple[int, str, str]]
 
 PARTS = (
     *("hemoglobin", "mask", "melanin", "offset_b", "offset_g", "offset_r", "panel"),
+    *("hemoglobin_colour", "melanin_colour"),
     *("reconstruction", "shading", "specular", "hemoglobin_sd", "melanin_sd"),
 )
 FILES = sorted(["a.png", "a.json", *(f"a_{part}.png" for part in PARTS)])
@@ -33,8 +34,8 @@ def test_a_folder_that_is_written_into_is_read_as_before(
         assert code == 0
         assert names(tmp_path) == FILES
         assert read_melanin(tmp_path) == {"a.json": 0.2}
-    assert "1 read, 13 passed over, 0 could not be read" in err
-    assert "13 results of skinnet" in err
+    assert "1 photograph, 1 face read, 0 not read, 15 passed over" in err
+    assert "15 results of skinnet" in err
 
 
 def test_results_beside_photographs_are_no_photographs_of_a_subfolder(
@@ -47,7 +48,7 @@ def test_results_beside_photographs_are_no_photographs_of_a_subfolder(
     assert run("predict", tmp_path / "g", "-r")[0] == 0
     assert sorted(path.name for path in tmp_path.rglob("*.json")) == ["a.json"]
     code, _, err = run("predict", tmp_path / "g" / "skinmaps")
-    assert code == 2 and "holds no photographs" in err and "13 results of skinnet" in err
+    assert code == 2 and "holds no photographs" in err and "15 results of skinnet" in err
 
 
 @pytest.mark.parametrize("spelling", ["*", "*.png", "a_*.png", "**/*", "[a-z]*"])
@@ -74,7 +75,7 @@ def test_a_star_names_the_folder_of_results_too(
         inputs = names(tmp_path) if expanded else ["*"]
         code, _, err = run("predict", *inputs)
         assert code == 0, err
-    assert "1 read, 13 passed over, 0 could not be read" in err
+    assert "1 photograph, 1 face read, 0 not read, 15 passed over" in err
     assert read_melanin(tmp_path / "skinmaps") == {"a.json": 0.2}
 
 
@@ -93,7 +94,7 @@ def test_a_result_that_is_piped_in_is_refused(
 ) -> None:
     run("predict", save(tmp_path / "a.png"), "-o", tmp_path)
     data = (tmp_path / "a_mask.png").read_bytes()
-    monkeypatch.setattr(sys, "stdin", io.TextIOWrapper(io.BytesIO(data)))
+    monkeypatch.setattr(sys, "stdin", io.TextIOWrapper(io.BytesIO(data), encoding="utf-8"))
     code, _, err = run("predict", "-", "-o", tmp_path)
     assert code == 2 and "standard input is a result of skinnet (map)" in err
 
@@ -105,7 +106,7 @@ def test_results_of_earlier_versions_are_known_too(run: Run, tmp_path: Path) -> 
     for path in (tmp_path / "out").iterdir():
         shutil.copy(path, tmp_path)
     code, _, err = run("predict", tmp_path, "-o", tmp_path / "new")
-    assert code == 0 and "1 read, 13 passed over" in err
+    assert code == 0 and "1 photograph, 1 face read, 0 not read, 13 passed over" in err
     assert read_melanin(tmp_path / "new") == {"a.json": 0.2}
 
 
@@ -117,7 +118,7 @@ def test_photographs_with_such_names_are_photographs(run: Run, tmp_path: Path, n
     save(tmp_path / name, pnginfo=info)
     (tmp_path / "a.json").write_text('{"file": "a.png", "labels": []}')
     code, _, err = run("predict", tmp_path, "-o", tmp_path / "out")
-    assert code == 0 and "1 read, 1 passed over" in err
+    assert code == 0 and "1 photograph, 1 face read, 0 not read, 1 passed over" in err
     assert read_melanin(tmp_path / "out") == {f"{name[:-4]}.json": 0.2}
 
 
@@ -131,7 +132,7 @@ def test_an_edited_photograph_is_read_only_where_it_alone_is_named(
     out = tmp_path / "out"
     for inputs in ([tmp_path], [tmp_path / f"*.{end}"], [photo, edited]):
         code, _, err = run("predict", *inputs, "-o", out)
-        assert code == 0 and "1 read, 1 passed over" in err
+        assert code == 0 and "1 photograph, 1 face read, 0 not read, 1 passed over" in err
         assert f"1 result of skinnet (b_edited.{end})" in err
         assert list(read_melanin(out)) == ["a.json"]
     code, _, err = run("predict", edited, "-o", out)
@@ -157,7 +158,11 @@ def test_edits_in_every_format_are_known(run: Run, tmp_path: Path, format_: str)
     (edited,) = (path for path in tmp_path.iterdir() if path != photo)
     renamed = edited.rename(tmp_path / "b")
     code, _, err = run("predict", tmp_path, "-o", tmp_path / "out")
-    assert code == 0 and "1 read, 1 passed over" in err and "1 result of skinnet (b)" in err
+    assert (
+        code == 0
+        and "1 photograph, 1 face read, 0 not read, 1 passed over" in err
+        and "1 result of skinnet (b)" in err
+    )
     assert list(read_melanin(tmp_path / "out")) == ["a.json"]
     assert run("edit", photo, "-o", edited)[0] == run("edit", photo, "-o", edited)[0] == 0
     assert renamed.read_bytes() == edited.read_bytes()

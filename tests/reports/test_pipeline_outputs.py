@@ -251,7 +251,7 @@ def models(made: Path, tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 def build(folder: Path, subjects: str, model: str) -> list[str]:
     words = ["build-model", str(folder / subjects), "-o", str(folder / model)]
-    return [*words, "--model.samples=2"]
+    return [*words, "--appearance.samples=2"]
 
 
 def sample(model: Path, output: Path) -> list[str]:
@@ -263,7 +263,7 @@ def test_a_model_of_other_people_is_not_replaced(models: Path, refused: Callable
     said = refused(*build(models, "second", "model"))
     assert "hybrid.npz is there already and was not made from these 3 files" in said
     assert read_all(models / "model") == before
-    assert main([*build(models, "first", "model"), "--model.components=1"]) == 0
+    assert main([*build(models, "first", "model"), "--appearance.components=1"]) == 0
     assert read_all(models / "model")["hybrid.npz"] != before["hybrid.npz"]
 
 
@@ -281,7 +281,7 @@ def test_the_default_folder_of_a_model_gets_a_number(
 ) -> None:
     monkeypatch.chdir(tmp_path)
     for subjects in ("first", "second"):
-        assert main(["build-model", str(models / subjects), "--model.samples=2"]) == 0
+        assert main(["build-model", str(models / subjects), "--appearance.samples=2"]) == 0
     assert {path.name for path in tmp_path.iterdir()} == {"skinmodel", "skinmodel-2"}
 
 
@@ -302,7 +302,7 @@ def test_a_file_of_the_user_in_the_folder_of_a_model_is_left_alone(
     models: Path, tmp_path: Path, refused: Callable[..., str], name: str
 ) -> None:
     (tmp_path / name).write_bytes(b"mine")
-    command = ["build-model", models / "first", "-o", tmp_path, "--model.samples=2"]
+    command = ["build-model", models / "first", "-o", tmp_path, "--appearance.samples=2"]
     assert f"{name} is there already" in refused(*command)
     assert read_all(tmp_path) == {name: b"mine"}
 
@@ -312,7 +312,7 @@ def test_a_folder_of_the_user_called_stack_is_left_alone(
 ) -> None:
     (tmp_path / "stack").mkdir()
     (tmp_path / "stack" / "focus.tif").write_bytes(b"mine")
-    command = ["build-model", models / "first", "-o", tmp_path, "--model.samples=2"]
+    command = ["build-model", models / "first", "-o", tmp_path, "--appearance.samples=2"]
     assert "stack holds other files (focus.tif)" in refused(*command)
     assert (tmp_path / "stack" / "focus.tif").read_bytes() == b"mine"
 
@@ -325,7 +325,13 @@ def test_random_and_edited_faces_are_no_subjects(
     shutil.copy(models / "samples" / "sample_00_maps.npz", tmp_path)
     assert main(["edit-maps", str(tmp_path / "1_maps.npz"), "--melanin=1.5"]) == 0
     (tmp_path / "1_edited_maps.npz").rename(tmp_path / "darker_maps.npz")
-    command = ["build-model", str(tmp_path), "-o", str(tmp_path / "model"), "--model.samples=2"]
+    command = [
+        "build-model",
+        str(tmp_path),
+        "-o",
+        str(tmp_path / "model"),
+        "--appearance.samples=2",
+    ]
     assert main(command) == 0
     said = capsys.readouterr()
     assert "sample_00_maps.npz is a random face and is left out" in said.err

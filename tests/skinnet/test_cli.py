@@ -12,10 +12,11 @@ from PIL import Image
 
 from skinnet import __version__, cli
 from skinnet.cli import main
+from skinnet.inference._colour_scales import MELANIN
 
 MAPS = [
     *("hemoglobin", "mask", "melanin", "offset_b", "offset_g", "offset_r", "shading", "specular"),
-    *("hemoglobin_sd", "melanin_sd"),
+    *("hemoglobin_sd", "melanin_sd", "hemoglobin_colour", "melanin_colour"),
 ]
 FILES = sorted([*(f"a_{name}.png" for name in (*MAPS, "panel", "reconstruction")), "a.json"])
 
@@ -24,8 +25,10 @@ Predict = Callable[..., int]
 
 @pytest.fixture
 def photo(tmp_path: Path, astronaut: np.ndarray) -> Path:
+    """The astronaut in warm light: the tiny model takes the wall for skin."""
     path = tmp_path / "a.png"
-    Image.fromarray(astronaut[:256, 96:352]).save(path)
+    warm = astronaut[:256, 96:352] * np.array([1, 0.95, 0.85])
+    Image.fromarray(warm.astype(np.uint8)).save(path)
     return path
 
 
@@ -57,9 +60,7 @@ def test_predict_writes_beside_the_photograph(
     assert predict(photo) == 0
     assert names(photo.parent / "skinmaps") == FILES
     out, err = capsys.readouterr()
-    assert (
-        out.startswith(f"{photo}: melanin 0.0") and "13 files" in out and len(out.split("\n")) == 2
-    )
+    assert out.startswith(f"{photo}: melanin ") and "15 files" in out and len(out.split("\n")) == 2
     assert err == ""
 
 
@@ -72,6 +73,57 @@ def test_maps_say_what_their_pixels_mean(predict: Predict, photo: Path, tmp_path
     skin = pixels(tmp_path / "out" / "a_mask.png") > 0.501 * 65535
     assert note["unit"] == "melanosome volume fraction"
     assert values[skin].mean() == pytest.approx(summary["maps"]["melanin"]["mean"], rel=1e-3)
+
+
+def test_maps_are_exactly_0_outside_of_the_mask_and_say_so(
+    predict: Predict, photo: Path, tmp_path: Path
+) -> None:
+    assert predict(photo, "-o", tmp_path / "out") == 0
+    summary = json.loads((tmp_path / "out" / "a.json").read_text())
+    assert summary["map_files"]["outside_mask"] == 0
+    assert summary["map_files"]["mask_above"] == 0.5
+    skin = pixels(tmp_path / "out" / "a_mask.png") > 0.501 * 65535
+    assert 0.2 < skin.mean() < 0.9
+    for name in MAPS[:-2]:
+        with Image.open(tmp_path / "out" / f"a_{name}.png") as image:
+            note = image.text
+            values = float(note["scale"]) * np.array(image) + float(note["offset"])
+        assert (name == "mask") == ("outside_mask" not in note)
+        assert name == "mask" or (values[~skin] == 0).mean() > 0.999
+
+
+def test_maps_in_colour_are_on_the_panels_scale(
+    predict: Predict, photo: Path, tmp_path: Path
+) -> None:
+    assert predict(photo, "-o", tmp_path / "out") == 0
+    summary = json.loads((tmp_path / "out" / "a.json").read_text())
+    scale = summary["map_files"]["colour"]["melanin"]
+    assert (scale["ticks"][-1], scale["unit"], scale["linear_to"]) == (50, "%", 1)
+    with Image.open(tmp_path / "out" / "a_melanin_colour.png") as image:
+        assert image.text["skinnet"].split()[3] == "colour"
+        assert image.text["colour_scale"].startswith(
+            "melanosomes in the epidermis, by volume: 0 to"
+        )
+        colours = np.array(image.convert("RGB"))
+    with Image.open(tmp_path / "out" / "a_melanin.png") as image:
+        values = float(image.text["scale"]) * np.array(image) + float(image.text["offset"])
+    skin = pixels(tmp_path / "out" / "a_mask.png") > 0.501 * 65535
+    off = np.abs(colours[skin].astype(int) - MELANIN.colour(values[skin]))
+    assert colours.shape[:2] == skin.shape and off.max() <= 2
+    grey = np.array([int(scale["outside_mask"][at : at + 2], 16) for at in (1, 3, 5)])
+    assert (colours[~skin] == grey).all(-1).mean() > 0.999
+
+
+@pytest.mark.parametrize(
+    ("which", "coloured"),
+    [("none", []), ("all", ["hemoglobin", "melanin", "shading", "specular"])],
+)
+def test_which_maps_are_in_colour_can_be_chosen(
+    predict: Predict, photo: Path, tmp_path: Path, which: str, coloured: list[str]
+) -> None:
+    assert predict(photo, "-o", tmp_path / "out", "--colour-maps", which) == 0
+    found = [name for name in names(tmp_path / "out") if "_colour" in name]
+    assert found == [f"a_{name}_colour.png" for name in coloured]
 
 
 def test_maps_are_soft_on_request(predict: Predict, photo: Path, tmp_path: Path) -> None:
@@ -101,7 +153,8 @@ def test_the_terminal_states_the_intervals_of_the_summary(
     for name, each in summary["pigments"].items():
         low, high = each["interval"]
         assert each["level"] == 0.9
-        assert f"{name} {each['mean']:.2g} (90%: {low:.2g} to {high:.2g})" in out
+        mean, low, high = (f"{100 * number:.2g}" for number in (each["mean"], low, high))
+        assert f"{name} {mean} % (90 %: {low} to {high}" in out
 
 
 def test_no_skin_is_null_and_reported(
@@ -143,10 +196,9 @@ def test_a_folder_goes_on_after_a_bad_file(
     empty, truncated, count = err.splitlines()
     assert empty.startswith(f"skinnet: {folder / '0.jpg'} is empty")
     assert truncated.startswith(f"skinnet: {folder / 'b.png'} is damaged or cut short")
-    assert count == (
-        "skinnet: 1 read, 1 passed over, 2 could not be read. "
-        "Passed over: 1 other file (notes.txt)."
-    )
+    assert count.startswith("skinnet: 1 photograph, 1 face read, 2 not read, 1 passed over, ")
+    where = folder / "skinmaps"
+    assert count.endswith(f": maps in {where}. Passed over: 1 other file (notes.txt).")
 
 
 def test_a_list_goes_on_after_a_bad_file(
@@ -157,7 +209,7 @@ def test_a_list_goes_on_after_a_bad_file(
     missing, empty, count = capsys.readouterr().err.splitlines()
     assert missing == f"skinnet: There is no file {tmp_path / 'no.jpg'}; check the path."
     assert empty.startswith(f"skinnet: The folder {tmp_path / 'empty'} holds no photographs; they")
-    assert count == "skinnet: 1 read, 0 passed over, 2 could not be read."
+    assert count.startswith("skinnet: 1 photograph, 1 face read, 2 not read, ")
     assert names(tmp_path / "skinmaps") == FILES
 
 
@@ -176,7 +228,7 @@ def test_faces_that_cannot_be_read_do_not_stop_a_run(
     assert summary["file"] == str(photo) and summary["id"] == summary["faces_found"] == 1
     assert f"The face in {tmp_path / 'small.png'} is 2" in err and "and 24 are needed" in err
     assert f"No face was found in {tmp_path / 'suit.png'}" in err
-    assert "1 read, 0 passed over, 1 without a face, 1 could not be read." in err
+    assert "1 photograph, 1 face read, 2 not read (1 could not be read, 1 without a face), " in err
 
 
 def test_without_a_face_the_option_is_named(
@@ -195,7 +247,9 @@ def test_standard_input_is_a_photograph(
     predict: Predict, photo: Path, monkeypatch: pytest.MonkeyPatch, tmp_path: Path
 ) -> None:
     monkeypatch.chdir(tmp_path)
-    monkeypatch.setattr(sys, "stdin", io.TextIOWrapper(io.BytesIO(photo.read_bytes())))
+    monkeypatch.setattr(
+        sys, "stdin", io.TextIOWrapper(io.BytesIO(photo.read_bytes()), encoding="utf-8")
+    )
     assert predict("-") == 0
     assert "stdin_panel.png" in names(tmp_path / "skinmaps")
     assert (
@@ -210,7 +264,7 @@ def test_empty_standard_input_is_reported(
     monkeypatch: pytest.MonkeyPatch,
     capsys: pytest.CaptureFixture[str],
 ) -> None:
-    monkeypatch.setattr(sys, "stdin", io.TextIOWrapper(io.BytesIO(b"")))
+    monkeypatch.setattr(sys, "stdin", io.TextIOWrapper(io.BytesIO(b""), encoding="utf-8"))
     assert main([*verb, "-", "--model", str(model_file)]) == 2
     assert (
         capsys.readouterr().err
@@ -305,10 +359,13 @@ def test_edit_writes_the_format_that_is_asked_for(
             ["-o", "b.gif"],
             "b.gif has to end in .jpg, .png, .tif, .webp, ",
         ),
-        (["-o", "b"], "got ''"),
+        (
+            ["-o", "b"],
+            "b has no ending that names a format, such as .jpg or .png; if it is to be a",
+        ),
         (["-o", "a.png"], "a.png is the photograph itself; choose another file with -o"),
         (["-o", "./a.png"], "is the photograph itself"),
-        (["-o", "none/b.png"], "b.png cannot be written"),
+        (["-o", "none/b.png"], "none/b.png cannot be written, since there is no folder none; make"),
         (["--melanin", "nan"], "melanin is multiplied by a number in [0, 10]; got nan"),
         (["--hemoglobin", "-1"], "hemoglobin is multiplied by a number in [0, 10]; got -1"),
         (["--melanin", "11"], "got 11"),
@@ -380,12 +437,66 @@ def test_odd_paths_are_sentences(
 
 
 @pytest.mark.parametrize(
-    "arguments", [[], ["predict"], ["paint", "a.jpg"], ["edit", "a.jpg", "--melanin", "dark"]]
+    ("arguments", "said"),
+    [
+        (["predict"], "predict needs input: photographs"),
+        (["predit", "a.jpg"], "There is no verb predit. Did you mean predict?"),
+        (["paint", "a.jpg"], "There is no verb paint. ("),
+        (["predict", "a.jpg", "--jsn"], "predict has no flag --jsn. Did you mean --json?"),
+        (["predict", "a.jpg", "--rec"], "predict has no flag --rec. Did you mean --recursive?"),
+        (["predict", "a.jpg", "--white_colour"], "Did you mean --white-colour?"),
+        (["predict", "a.jpg", "--region", "fce"], "--region is face or skin; got 'fce'. Did you"),
+        (["predict", "a.jpg", "-x"], "predict does not know what '-x' is for."),
+        (["predict", "a.jpg", "-o"], "-o/--output needs a value"),
+        (["predict", "a.jpg", "--json=3"], "--json takes no value; got '3'."),
+        (["predict", "a.jpg", "-q", "-v"], "-v/--verbose and -q/--quiet exclude each other"),
+        (["edit", "a.jpg", "--melanin", "dark"], "--melanin is a number; got 'dark'."),
+        (["web", "--port", "dark"], "--port is a whole number; got 'dark'."),
+        (["help", "predit"], "There is no verb predit. Did you mean predict?"),
+        (["--jsn", "predict"], "skinnet has no flag --jsn before the verb."),
+    ],
 )
-def test_usage_errors_exit_with_2(arguments: list[str]) -> None:
-    with pytest.raises(SystemExit) as stop:
-        main(arguments)
-    assert stop.value.code == 2
+def test_a_mistake_is_answered_with_a_sentence(
+    arguments: list[str], said: str, capsys: pytest.CaptureFixture[str]
+) -> None:
+    assert main(arguments) == 2
+    out, err = capsys.readouterr()
+    assert out == "" and len(err.splitlines()) == 1
+    assert err.startswith(f"skinnet: {said}") or (said.startswith("Did you") and said in err)
+
+
+@pytest.mark.parametrize("arguments", [[], ["help"], ["--help"], ["-q", "-h"]])
+def test_the_command_alone_lists_its_verbs(
+    arguments: list[str], capsys: pytest.CaptureFixture[str]
+) -> None:
+    assert main(arguments) == 0
+    out = capsys.readouterr().out
+    assert all(f"\n  {verb} " in out for verb in [*cli.PHOTO_VERBS, *cli.PIPELINE_VERBS])
+
+
+def test_quiet_and_verbose_may_stand_before_the_verb(
+    predict: Predict, photo: Path, model_file: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    arguments = ["predict", str(photo), str(photo), "--model", str(model_file)]
+    assert main(["-q", *arguments]) == 0
+    out, err = capsys.readouterr()
+    assert len(out.splitlines()) == 1 and err == ""
+    assert main([*arguments, "-v"]) == 0
+    assert "predict took" in capsys.readouterr().err
+
+
+@pytest.mark.parametrize("flags", [[], ["-v"]])
+def test_a_fault_is_a_sentence(
+    flags: list[str], monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    def fail(options: object) -> bool:
+        raise LookupError("nothing there")
+
+    monkeypatch.setattr("skinnet.inference._photo_verbs.predict", fail)
+    assert main([*flags, "predict", "a.jpg"]) == 70
+    err = capsys.readouterr().err
+    assert "An unexpected error, LookupError: nothing there." in err.splitlines()[-1]
+    assert ("Traceback" in err) is bool(flags)
 
 
 def test_an_interrupt_is_quiet(
@@ -394,7 +505,7 @@ def test_an_interrupt_is_quiet(
     def interrupt(options: object) -> int:
         raise KeyboardInterrupt
 
-    monkeypatch.setattr(cli, "_predict", interrupt)
+    monkeypatch.setattr("skinnet.inference._photo_verbs.predict", interrupt)
     assert main(["predict", "a.jpg"]) == 130
     assert capsys.readouterr() == ("", "")
 
@@ -436,3 +547,17 @@ def test_a_closed_pipe_is_no_traceback(photo: Path, model_file: Path) -> None:
 def test_an_empty_name_is_not_the_current_folder(capsys: pytest.CaptureFixture[str]) -> None:
     assert main(["predict", ""]) == 2
     assert "empty name" in capsys.readouterr().err
+
+
+def test_what_runs_the_networks_is_chosen(
+    photo: Path, model_file: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    arguments = ["predict", str(photo), "--json", "--model", str(model_file), "--provider"]
+    assert main([*arguments, "cuda, cpu"]) == 0
+    said = capsys.readouterr()
+    assert json.loads(said.out)["provider"] == "cpu"
+    assert "The networks ran on cpu, since the execution provider cuda is missing." in said.err
+    assert main([*arguments, "cuda"]) == 2
+    assert "pip install onnxruntime-gpu" in capsys.readouterr().err
+    assert main([*arguments, "gpu"]) == 2
+    assert "There is no execution provider 'gpu'" in capsys.readouterr().err

@@ -64,8 +64,8 @@ def find_face_parts(photo: NDArray[np.uint8], face: Face) -> FaceParts:
         return FaceParts(landmarks, regions, (), ())
     for name in _BEARDED:
         regions[name] = _leave_out_beard(photo, regions[name], skin)
-    sclera = locate_sclera(photo, landmarks, skin)
-    return FaceParts(landmarks, regions, sclera, locate_teeth(photo, landmarks, skin))
+    sclera, teeth = (locate(photo, landmarks, skin) for locate in (locate_sclera, locate_teeth))
+    return FaceParts(landmarks, regions, tuple(sclera), tuple(teeth))
 
 
 def _clip_region(landmarks: NDArray[np.float32], name: str, shape: tuple[int, ...]) -> FaceRegion:

@@ -7,6 +7,7 @@ import numpy as np
 from numpy.typing import NDArray
 from PIL import Image
 
+from skinnet.images._arguments import check_photo
 from skinnet.images.faces._detector import Detection, detect_faces
 from skinnet.images.faces._face_mesh import find_landmarks
 from skinnet.images.faces._face_place import place_face, to_box
@@ -78,6 +79,9 @@ def find_faces(photo: NDArray[np.uint8]) -> list[Face]:
         Faces from left to right. Of a large photograph, faces whose box is a fortieth of the longer
         side are found.
 
+    Raises:
+        InputError: The photograph has another shape or type.
+
     Source:
         BlazeFace (Bazarevsky et al. 2019) finds places, and Attention Mesh (Grishchenko et al.
         2020) confirms them and gives landmarks; both in MediaPipe's version.
@@ -88,6 +92,7 @@ def find_faces(photo: NDArray[np.uint8]) -> list[Face]:
         >>> find_faces(astronaut())
         [<Face Box(left=170, top=59, right=279, bottom=168), tilt 3 degrees, score 1.00>]
     """
+    check_photo(photo)
     found: list[_Placed] = []
     _search_whole(photo, found)
     _search_parts(photo, found)

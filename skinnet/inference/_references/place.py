@@ -166,7 +166,8 @@ def name_reference(display: Array, where: str = "") -> str:
 
 def _make_box(picture: Picture, place: tuple[int, ...]) -> Box:
     height, width = picture.pixels.shape[:2]
-    if len(place) not in (2, 4):
+    is_whole = all(isinstance(each, int | np.integer) for each in place)
+    if len(place) not in (2, 4) or not is_whole:
         raise InputError(f"A place is (x, y) or (x0, y0, x1, y1) in pixels; got {place!r:.60}.")
     if len(place) == 2:
         half = max(_LEAST_HALF, round(_SHARE * max(height, width)))

@@ -41,7 +41,7 @@ class Applied(NamedTuple):
         )
 
     def restore(self, decomposition: Decomposition) -> Decomposition:
-        """Give the reconstruction the photograph's tones."""
+        """Give a decomposition the photograph as it was, and its reconstruction these tones."""
         if self.profile is None or self.picture is self.original:
             return decomposition
         box = decomposition.box.slices
@@ -49,7 +49,10 @@ class Applied(NamedTuple):
         read = decomposition.reconstruction[box]
         same = (read == self.picture.srgb[box]).all(-1, keepdims=True)
         picture[box] = np.where(same, picture[box], self.profile.restore(read))
-        return replace(decomposition, reconstruction=picture)
+        source = decomposition._source
+        if source is not None:  # an edit is one of the photograph as it was
+            source = source._replace(picture=self.original, outputs=None)
+        return replace(decomposition, reconstruction=picture, _source=source)
 
 
 def apply_profile(picture: Picture, capture: Any, is_read: bool = True) -> Applied:

@@ -70,7 +70,14 @@ def test_arrays_are_photographs(array: np.ndarray) -> None:
         (np.zeros((0, 4, 3)), r"got shape \[0, 4, 3\]"),
         (np.zeros(4), r"got shape \[4\]"),
         (np.zeros((4, 4, 3), np.int64), r"got int64"),
-        (np.zeros((4, 4, 3), np.uint16), r"got uint16"),
+        (np.zeros((4, 4, 3), bool), r"got bool\. A mask is no photograph"),
+        (np.zeros((4, 4, 3), complex), r"got complex128"),
+        (np.zeros((4, 4, 3), object), r"got object\. Give the images as a list"),
+        (np.full((4, 4, 3), 255, np.uint16), r"largest value of this one is 255\. If its white"),
+        (np.full((4, 4, 3), 1 / 255**2), r"Was it divided by 255 twice\?"),
+        (np.zeros((3, 5, 5), np.uint8), r"Put the channels last: array\.transpose\(1, 2, 0\)"),
+        (np.ones((4, 4)).view(np.matrix), r"not an np\.matrix; give np\.asarray"),
+        (np.ma.masked_less(np.ones((4, 4)), 2), r"has masked values"),
     ],
 )
 def test_other_arrays_are_refused(array: np.ndarray, words: str) -> None:

@@ -10,7 +10,7 @@ from skinnet.errors import InputError
 from skinnet.images import ColourSpace, Picture, read_picture
 from skinnet.images._fit import blend_with_white, convert_to_srgb, reduce_depth
 from skinnet.images._named_spaces import DISPLAY_P3
-from skinnet.images._write import choose_suffix, find_format, write_picture
+from skinnet.images._write import check_quality, choose_suffix, find_format, write_picture
 
 GREY = np.full((4, 5, 3), 90, np.uint8)
 P3 = ColourSpace("Display P3", "ICC profile", DISPLAY_P3.profile())
@@ -108,3 +108,63 @@ def test_conversion_to_srgb_keeps_colours() -> None:
 def test_arrays_are_written_too(tmp_path: Path) -> None:
     write_picture(tmp_path / "a.png", read_picture(GREY))
     np.testing.assert_array_equal(read_picture(tmp_path / "a.png").pixels, GREY)
+
+
+def read_levels(path: Path) -> np.ndarray:
+    with Image.open(path) as image:
+        return np.array(image.convert("RGB")).astype(int)
+
+
+def make_noise() -> np.ndarray:
+    return np.random.default_rng(0).integers(0, 256, (64, 64, 3), np.uint8)
+
+
+@pytest.mark.parametrize("suffix", [".jpg", ".webp", ".avif", ".heic"])
+def test_a_lower_quality_is_smaller_and_less_alike(tmp_path: Path, suffix: str) -> None:
+    if suffix == ".heic":
+        pytest.importorskip("pillow_heif")
+    noise, found = make_noise(), []
+    for quality in (30, 95):
+        path = tmp_path / f"{quality}{suffix}"
+        assert write_picture(path, Picture("a", noise), quality=quality) == ()
+        difference = np.abs(read_picture(path).srgb.astype(int) - noise).mean()
+        found.append((path.stat().st_size, -difference))
+    assert found[0] < found[1] and found[0][1] < found[1][1]
+
+
+@pytest.mark.parametrize("suffix", [".jpg", ".webp"])
+def test_a_quality_that_is_asked_for_replaces_that_of_the_original(
+    tmp_path: Path, suffix: str
+) -> None:
+    original = tmp_path / f"a{suffix}"
+    Image.fromarray(make_noise()).save(original, quality=50, subsampling="4:2:0")
+    picture = read_picture(original)
+    for name, quality in (("own", None), ("high", 98), ("low", 10)):
+        write_picture(tmp_path / f"{name}{suffix}", picture, quality=quality)
+    own, high, low = (
+        (tmp_path / f"{name}{suffix}").stat().st_size for name in ("own", "high", "low")
+    )
+    assert low < own < high
+    if suffix == ".jpg":
+        with Image.open(tmp_path / "high.jpg") as image:
+            assert image.layer[0][1:3] == (2, 2)  # the subsampling stays
+
+
+def test_formats_without_loss_say_that_they_have_no_quality(tmp_path: Path) -> None:
+    for suffix, name in ((".png", "PNG"), (".tif", "TIFF"), (".bmp", "BMP"), (".ppm", "PPM")):
+        path = tmp_path / f"a{suffix}"
+        (said,) = write_picture(path, Picture("a", GREY), quality=50)
+        assert said == f"{path} is written without loss: {name} has no quality."
+        np.testing.assert_array_equal(read_levels(path), GREY)
+
+
+@pytest.mark.parametrize("quality", [0, 101, -5])
+def test_qualities_have_a_range(quality: int) -> None:
+    with pytest.raises(InputError, match=f"from 1 to 100; got {quality}"):
+        check_quality(quality)
+
+
+def test_messages_name_the_file_as_they_are_told(tmp_path: Path) -> None:
+    deep = Picture("a", GREY.astype(np.uint16))
+    (said,) = write_picture(tmp_path / "a.jpg", deep, name="standard output")
+    assert said.startswith("standard output has 8 bits a channel")

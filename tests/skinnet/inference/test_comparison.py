@@ -142,6 +142,20 @@ def test_the_command_writes_a_picture_and_a_summary(
     assert "(unchanged); 2 files" in capsys.readouterr().out
 
 
+def test_an_edit_of_the_other_photograph_is_said_to_be_one(
+    astronaut: np.ndarray, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    before, after = tmp_path / "a.png", tmp_path / "a_edited.png"
+    Image.fromarray(astronaut).save(before)
+    assert main(["edit", str(before), "--melanin", "1.5"]) == 0
+    for names in ((before, after), (after, before)):
+        assert main(["compare", *map(str, names)]) == 0
+        assert f"{after} is an edit of {before} by skinnet." in capsys.readouterr().err
+    Image.fromarray(astronaut[:, 1:]).save(before)
+    assert main(["compare", str(before), str(after)]) == 0
+    assert "is an edit of" not in capsys.readouterr().err
+
+
 def test_the_command_reports_bad_input_and_writes_nothing(
     astronaut: np.ndarray, tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:

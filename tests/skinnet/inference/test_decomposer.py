@@ -147,6 +147,27 @@ def test_an_edit_leaves_all_but_skin_untouched(
     assert srgb_to_linear(edited[skin]).mean() < 0.9 * srgb_to_linear(astronaut[skin]).mean()
 
 
+@pytest.mark.parametrize("dtype", [np.float64, np.uint8])
+def test_a_mask_weighs_an_edit(
+    decomposer: Decomposer, astronaut: np.ndarray, dtype: type[np.generic]
+) -> None:
+    share = np.ones((512, 512))
+    share[:, :200], share[:, 200:230] = 0, 0.5
+    mask = share if dtype is np.float64 else np.rint(255 * share).astype(dtype)
+    whole = decomposer.edit(astronaut, melanin=3.0)
+    edited = decomposer.edit(astronaut, melanin=3.0, mask=mask)
+    np.testing.assert_array_equal(edited[:, :200], astronaut[:, :200])
+    np.testing.assert_array_equal(edited[:, 230:], whole[:, 230:])
+    before, half, full = (srgb_to_linear(each[:, 200:230]) for each in (astronaut, edited, whole))
+    assert (full != before).any()
+    np.testing.assert_allclose(half - before, (full - before) / 2, atol=0.006)
+
+
+def test_a_mask_of_another_size_is_refused(decomposer: Decomposer, astronaut: np.ndarray) -> None:
+    with pytest.raises(InputError, match="The mask has 3 x 2 pixels, and the image 512 x 512"):
+        decomposer.edit(astronaut, melanin=2.0, mask=np.ones((2, 3)))
+
+
 def test_an_edit_of_blood_changes_green_most(
     decomposer: Decomposer, decomposition: Decomposition, astronaut: np.ndarray
 ) -> None:
@@ -174,11 +195,11 @@ def test_files_are_opened_at_the_first_photograph_and_once(
 ) -> None:
     opened = []
 
-    def counted(path: Path, kind: str, threads: int | None) -> object:
+    def counted(path: Path, kind: str, *options: object) -> object:
         opened.append(kind)
-        return open_model(path, kind, threads)
+        return open_model(path, kind, *options)
 
-    monkeypatch.setattr("skinnet.inference.decomposer.open_model", counted)
+    monkeypatch.setattr("skinnet.inference._subject_reader.open_model", counted)
     decomposer = Decomposer(model_file)
     assert opened == []
     decomposer(astronaut)
@@ -187,7 +208,7 @@ def test_files_are_opened_at_the_first_photograph_and_once(
 
 
 def test_threads_are_counted_from_one(model_file: Path) -> None:
-    with pytest.raises(InputError, match="threads is at least 1, or None for all cores; got 0"):
+    with pytest.raises(InputError, match=r"threads is a whole number of at least 1, .* got 0"):
         Decomposer(model_file, threads=0)
 
 

@@ -28,7 +28,7 @@ def shots(tmp_path: Path) -> list[Path]:
 
 
 def load(path: Path) -> dict:
-    return json.loads(path.read_text())
+    return json.loads(path.read_text(encoding="utf-8"))
 
 
 def test_shots_are_fused_into_a_panel_and_a_summary(run: Run, shots: list[Path]) -> None:
@@ -36,12 +36,12 @@ def test_shots_are_fused_into_a_panel_and_a_summary(run: Run, shots: list[Path])
     folder = shots[0].parent / "skinmaps"
     assert code == 0 and names(folder) == ["a_person.json", "a_person.png"]
     melanin, hemoglobin = (
-        f"{name} {one['mean']:.2g} (90%: {low:.2g} to {high:.2g})"
+        f"{name} {100 * one['mean']:.2g} % (90 %: {100 * low:.2g} to {100 * high:.2g} %)"
         for name, one in load(folder / "a_person.json")["pigments"].items()
         for low, high in [one["interval"]]
     )
     assert out.startswith(f"2 shots of 2 sessions: {melanin}, {hemoglobin} on skin; 2 files")
-    assert "2 read, 0 passed over, 0 could not be read." in err
+    assert "2 photographs, 2 faces read, 0 not read, " in err
     summary = load(folder / "a_person.json")
     assert [shot["file"] for shot in summary["shots"]] == [str(each) for each in shots]
     assert [shot["input"]["path"] for shot in summary["shots"]] == ["../a.png", "../b.png"]
@@ -67,7 +67,7 @@ def test_bad_files_are_named_and_the_rest_goes_on(
     assert code == 2 and out.startswith("2 shots of 2 sessions")
     assert "bad.jpg is empty" in err and "No face was found in" in err
     assert "There is no file no.jpg" in err
-    assert "2 read, 0 passed over, 1 without a face, 2 could not be read." in err
+    assert "2 photographs, 2 faces read, 3 not read (2 could not be read, 1 without a face)" in err
 
 
 def test_a_left_out_shot_is_named_with_exit_code_2(

@@ -39,5 +39,5 @@ def maps(scans: Path) -> Path:
 def model(maps: Path) -> Path:
     """The folder that `skinnet build-model` makes of the three."""
     folder = maps.parent / "skinmodel"
-    assert main(["build-model", str(maps), "-o", str(folder), "--model.samples=5"]) == 0
+    assert main(["build-model", str(maps), "-o", str(folder), "--appearance.samples=5"]) == 0
     return folder

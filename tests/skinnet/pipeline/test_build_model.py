@@ -37,7 +37,7 @@ def test_a_joint_model_is_built_where_the_shape_model_is_named(maps: Path, tmp_p
     from skinnet.shape.model_formats import save_shape_model
 
     save_shape_model(tmp_path / "shape.npz", load_shape_model())
-    command = ["build-model", str(maps), "-o", str(tmp_path / "out"), "--model.samples=3"]
+    command = ["build-model", str(maps), "-o", str(tmp_path / "out"), "--appearance.samples=3"]
     assert main([*command, "--joint=true", "--shape", str(tmp_path / "shape.npz")]) == 0
     record = json.loads((tmp_path / "out" / "measures.json").read_text())
     assert "JointModel" in record["measures"]
@@ -48,15 +48,17 @@ def test_a_drawn_mask_keeps_texels_out(maps: Path, tmp_path: Path) -> None:
     drawn = np.zeros((SIZE, SIZE), np.uint8)
     drawn[:, : SIZE // 2] = 255
     Image.fromarray(drawn).save(tmp_path / "mask.png")
-    command = ["build-model", str(maps), "-o", str(tmp_path), "--model.samples=3"]
-    assert main([*command, f"--model.mask={tmp_path / 'mask.png'}"]) == 0
+    command = ["build-model", str(maps), "-o", str(tmp_path), "--appearance.samples=3"]
+    assert main([*command, f"--appearance.mask={tmp_path / 'mask.png'}"]) == 0
     mask = HybridModel.load(tmp_path / "hybrid.npz").mask
     assert mask[:, : SIZE // 2].any() and not mask[:, SIZE // 2 :].any()
 
 
 def test_a_mask_of_another_size_is_refused(maps: Path, tmp_path: Path, refused: Refused) -> None:
     Image.new("L", (9, 7)).save(tmp_path / "mask.png")
-    said = refused("build-model", maps, "-o", tmp_path, f"--model.mask={tmp_path / 'mask.png'}")
+    said = refused(
+        "build-model", maps, "-o", tmp_path, f"--appearance.mask={tmp_path / 'mask.png'}"
+    )
     assert f"is 9 x 7 pixels and the maps are {SIZE} x {SIZE}" in said
     assert not list(tmp_path.glob("*.npz"))
 
@@ -85,7 +87,7 @@ def test_too_few_subjects_are_refused(maps: Path, tmp_path: Path, refused: Refus
     assert "There is no" in refused("build-model", tmp_path / "absent")
     said = refused("build-model", maps / "a_maps.npz", "-o", tmp_path)
     assert "1 subjects were found" in said
-    said = refused("build-model", maps, "-o", tmp_path, "--model.components=9")
+    said = refused("build-model", maps, "-o", tmp_path, "--appearance.components=9")
     assert "9" in said and "components" in said
 
 
@@ -94,7 +96,7 @@ def test_an_interrupted_build_goes_on(
 ) -> None:
     from skinnet.pipeline import _model_inputs
 
-    command = ["build-model", str(maps), "-o", str(tmp_path), "--model.samples=3"]
+    command = ["build-model", str(maps), "-o", str(tmp_path), "--appearance.samples=3"]
     whole = _model_inputs._read_texture
 
     def broken(file: Path) -> object:

@@ -74,7 +74,7 @@ def test_old_names_of_the_camera_angles_are_answered_with_the_new(
     maps: Path, tmp_path: Path, refused: Refused, old: str, new: str
 ) -> None:
     command = ("edit-maps", maps / "a_maps.npz", "-o", tmp_path)
-    sentence = f"'relight.{old}' is now called 'relight.{new}'; use the new name."
+    sentence = f"--relight.{old} of skinnet edit-maps is now called --relight.{new}; use that name."
     assert sentence in refused(*command, f"--relight.{old}=20")
     assert sentence in refused(*command, f"--relight.{old}", 20)
     (tmp_path / "old.yaml").write_text(f"relight:\n  {old}: 20.0\n")

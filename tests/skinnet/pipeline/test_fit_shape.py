@@ -108,7 +108,7 @@ def test_two_scans_of_one_name_are_refused(scans: Path, tmp_path: Path, refused:
         ("--fit.kept=80", "kept is a share of the vertices"),
         ("--fit.keep=0.8", "keep"),
         ("--config=absent.yaml", "absent.yaml"),
-        ("--model=absent.npz", "There is no shape model absent.npz"),
+        ("--shape=absent.npz", "There is no shape model absent.npz"),
     ],
 )
 def test_a_bad_option_is_named(scans: Path, refused: Refused, option: str, words: str) -> None:

@@ -55,7 +55,10 @@ def test_finished_work_is_kept_and_lost_work_is_made_again(
     assert main(command) == 0
     said = capsys.readouterr()
     assert "a_maps.npz is there already and is kept" in said.err
-    assert "b.obj: median" in said.out and "a.obj: median" not in said.out
+    assert "b_maps.npz is there already" not in said.err
+    assert [line.partition(": median")[0][-5:] for line in said.out.splitlines()] == [
+        *("a.obj", "b.obj", "c.obj")
+    ]
     after = {file.name: file.stat().st_mtime_ns for file in maps.iterdir()}
     assert before.keys() == after.keys()
     assert after["b_shape.npz"] == before["b_shape.npz"]
@@ -102,5 +105,5 @@ def test_a_model_without_texture_space_gets_one(
     scans: Path, tmp_path: Path, refused: Refused
 ) -> None:
     shutil.copy(scans / "a.obj", tmp_path / "x.obj")
-    said = refused("maps", tmp_path / "x.obj", "--warp.own_uv=true", "--model=absent")
+    said = refused("maps", tmp_path / "x.obj", "--warp.own_uv=true", "--shape=absent")
     assert "There is no shape model absent" in said

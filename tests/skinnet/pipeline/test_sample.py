@@ -1,5 +1,6 @@
 """`skinnet sample`."""
 
+import json
 from collections.abc import Callable
 from pathlib import Path
 
@@ -44,3 +45,17 @@ def test_bad_samples_are_refused(
 def test_a_linear_model_is_no_hybrid(model: Path, refused: Refused) -> None:
     said = refused("sample", model / "linear.npz")
     assert "is a LinearModel, and a HybridModel is needed" in said
+
+
+def test_json_lists_what_was_made(
+    model: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    command = ["sample", str(model / "hybrid.npz"), "-n", "2", "-o", str(tmp_path / "out")]
+    assert main([*command, "--json", "--quiet"]) == 0
+    out, err = capsys.readouterr()
+    (line,) = out.splitlines()
+    found = json.loads(line)
+    assert (found["count"], found["seed"], found["spread"]) == (2, 0, 1.0) and err == ""
+    assert {Path(file).name for file in found["files"]} == {
+        file.name for file in (tmp_path / "out").iterdir()
+    }

@@ -8,7 +8,7 @@ from skinnet.pipeline._sentence_parser import SentenceParser
 
 def test_an_error_is_one_line_that_names_the_help() -> None:
     parser = SentenceParser(prog="skinnet maps")
-    with pytest.raises(InputError, match=r"--bogus.* \(skinnet maps --help lists the options\)$"):
+    with pytest.raises(InputError, match=r"--bogus.* \(skinnet maps --help lists the flags\)$"):
         parser.parse_args(["--bogus", "3"])
 
 
@@ -32,5 +32,5 @@ def test_an_old_name_is_answered_with_the_new_one(message: str) -> None:
 def test_other_words_are_left_alone(message: str) -> None:
     parser = SentenceParser()
     parser.renamed = {"old": "new"}
-    with pytest.raises(InputError, match="lists the options"):
+    with pytest.raises(InputError, match="lists the flags"):
         parser.error(message)

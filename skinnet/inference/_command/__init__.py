@@ -1,0 +1,1 @@
+"""The command line: flags, help and examples of the verbs. Nothing here is slow to import."""
