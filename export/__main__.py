@@ -1,20 +1,32 @@
 """`python -m export CHECKPOINT -o skin.onnx`."""
 
 import argparse
+import json
 import sys
 from collections.abc import Sequence
+from dataclasses import asdict
 from pathlib import Path
+from typing import Any
 
 from skinnet.errors import InputError
+from skinnet.inference._command.assumptions import describe_versions
+from skinnet.inference._command.spelling import spell_flags
+from skinnet.inference._command.verb_parser import VerbParser, read_verbosity
+from skinnet.inference._messages import explain, keep_verbosity, log, print_line, set_verbosity
+
+_DESCRIPTION = (
+    "Write a checkpoint as ONNX, compared with torch: the encoder to FILE, and beside it the "
+    "decoder, .decoder.onnx, and the weights, .safetensors."
+)
+_EXAMPLES = (
+    ("python -m export runs/quick/best.ckpt -o skin.onnx", "encoder, decoder and weights"),
+    ("python -m export runs/quick/best.ckpt -o small.onnx --half", "in half precision"),
+)
+_PACKAGES = ("numpy", "torch", "onnx", "onnxscript", "onnxruntime")
 
 
-def main(arguments: Sequence[str] | None = None) -> int:
-    """Export a checkpoint; return 0, or 2 with a sentence on stderr for bad input."""
-    parser = argparse.ArgumentParser(
-        prog="python -m export",
-        description="Write a checkpoint as ONNX, compared with torch: the encoder to FILE, and "
-        "beside it the decoder, .decoder.onnx, and the weights, .safetensors.",
-    )
+def add_arguments(parser: argparse.ArgumentParser) -> None:
+    """Add the flags of the command."""
     parser.add_argument("checkpoint", type=Path, help="a .ckpt of training, or .safetensors")
     parser.add_argument(
         "-o",
@@ -29,9 +41,24 @@ def main(arguments: Sequence[str] | None = None) -> int:
         action="store_true",
         help="round the encoder's weights to half precision; .safetensors stores them as float16",
     )
-    options = parser.parse_args(arguments)
+    parser.add_argument(
+        "--json", action="store_true", help="print each file as one line of JSON, nothing else"
+    )
+
+
+def main(arguments: Sequence[str] | None = None) -> int:
+    """Export a checkpoint; return 0, or 2 with a sentence on stderr for bad input."""
+    with keep_verbosity():
+        return _run(list(sys.argv[1:] if arguments is None else arguments))
+
+
+def _run(arguments: list[str]) -> int:
     try:
-        _export(options.checkpoint, options.output, options.half)
+        parser = VerbParser("python -m export", _DESCRIPTION, _EXAMPLES, add_arguments)
+        options = parser.parse(spell_flags(arguments))
+        set_verbosity(read_verbosity(options))
+        explain(describe_versions(_PACKAGES))
+        _export(options)
     except ModuleNotFoundError as error:
         print(f'export needs {error.name}: pip install -e ".[export]"', file=sys.stderr)
         return 2
@@ -41,12 +68,13 @@ def main(arguments: Sequence[str] | None = None) -> int:
     return 0
 
 
-def _export(checkpoint: Path, given: Path | None, half: bool) -> None:
+def _export(options: argparse.Namespace) -> None:
     # Imported here, so that --help does not wait for torch.
     from export.onnx_file import SIZES, export_model
     from export.outputs import DEFAULT, choose_output, describe_checkpoint
     from skinnet.network import SkinAutoencoder
 
+    checkpoint, given, half = options.checkpoint, options.output, options.half
     output = given or DEFAULT
     if output.suffix != ".onnx":
         raise InputError(f"{output} does not end in .onnx; name the file that is to be written.")
@@ -63,13 +91,20 @@ def _export(checkpoint: Path, given: Path | None, half: bool) -> None:
     model = SkinAutoencoder.from_pretrained(checkpoint)
     reports = export_model(model, output, half, describe_checkpoint(checkpoint, output))
     sizes = ", ".join("x".join(map(str, size)) for size in SIZES)
-    print(f"compared with torch at {sizes} (batch x height x width)")
+    log(f"compared with torch at {sizes} (batch x height x width)")
     for report in reports:
-        name, worst = max(report.difference.items(), key=lambda item: item[1])
-        print(
-            f"{report.path}: {report.megabytes:.2f} MB, largest difference {worst:.1e} of "
-            f"the range ({name}), {report.milliseconds:.0f} ms at 256 x 256"
-        )
+        _print(report, options.json)
+
+
+def _print(report: Any, as_json: bool) -> None:
+    name, worst = max(report.difference.items(), key=lambda item: item[1])
+    if as_json:
+        print_line(json.dumps({**asdict(report), "path": str(report.path)}, default=float))
+        return
+    print_line(
+        f"{report.path}: {report.megabytes:.2f} MB, largest difference {worst:.1e} of "
+        f"the range ({name}), {report.milliseconds:.0f} ms at 256 x 256"
+    )
 
 
 if __name__ == "__main__":

@@ -16,7 +16,7 @@ def run_without(missing: str, code: str) -> "subprocess.CompletedProcess[str]":
 
 @pytest.mark.parametrize(
     ("package", "missing", "arguments"),
-    [("train", "lightning", []), ("export", "onnx", ["absent.ckpt"])],
+    [("train", "lightning", ["fit"]), ("export", "onnx", ["absent.ckpt"])],
 )
 def test_a_missing_extra_is_named(package: str, missing: str, arguments: list[str]) -> None:
     code = (

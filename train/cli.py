@@ -19,6 +19,10 @@ from lightning.pytorch.cli import LightningArgumentParser, LightningCLI
 from lightning.pytorch.loggers import Logger
 
 from skinnet.errors import InputError
+from skinnet.inference._command.assumptions import describe_versions
+from skinnet.inference._command.spelling import spell_keys
+from skinnet.inference._command.verb_parser import take_verbosity
+from skinnet.inference._messages import Verbosity
 from skinnet.network import read_checkpoint
 from skinnet.pipeline._sentence_parser import SentenceParser
 from train.callbacks import LastCheckpoint, PictureGrid, make_best_checkpoint, report_best
@@ -183,7 +187,7 @@ def check_checkpoint(subcommand: str, path: str | None) -> None:
     """
     if path is None:
         if subcommand != "fit":
-            raise InputError(f"{subcommand} needs a trained model: add --ckpt_path RUN/best.ckpt.")
+            raise InputError(f"{subcommand} needs a trained model: add --ckpt-path RUN/best.ckpt.")
     else:
         read_checkpoint(path)
 
@@ -196,6 +200,8 @@ def _make_progress_bar() -> RichProgressBar | TQDMProgressBar:
     # Without a terminal, Rich shows only its last frame.
     return RichProgressBar() if sys.stderr.isatty() else TQDMProgressBar(refresh_rate=50)
 
+
+_PACKAGES = ("numpy", "torch", "lightning", "kornia", "jsonargparse")
 
 _EXPECTED_WARNINGS = (
     "LightningCLI's args parameter is intended",  # tests pass a list
@@ -218,7 +224,13 @@ def _is_no_advertisement(record: logging.LogRecord) -> bool:
 def main(arguments: Sequence[str] | None = None) -> int:
     """Run a training command; return 0, or 2 with a sentence on stderr for bad input."""
     logging.getLogger("lightning.pytorch.utilities.rank_zero").addFilter(_is_no_advertisement)
+    given = [
+        "--help" if word == "--help-all" else word
+        for word in spell_keys(sys.argv[1:] if arguments is None else arguments)
+    ]
     try:
+        level, given = take_verbosity(given)
+        given += _apply_verbosity(level)
         with warnings.catch_warnings(), explain_refusals(lambda e: write_refusal(e, {}, [])):
             for message in _EXPECTED_WARNINGS:
                 warnings.filterwarnings("ignore", message)
@@ -229,7 +241,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
                 seed_everything_default=0,
                 parser_class=_TrainParser,
                 save_config_callback=None,  # the folder of the run has it
-                args=list(arguments) if arguments is not None else None,
+                args=given,
                 parser_kwargs={"prog": "python -m train"},
             )
     except torch.OutOfMemoryError as error:
@@ -239,6 +251,16 @@ def main(arguments: Sequence[str] | None = None) -> int:
         print(f"train: {error}", file=sys.stderr)
         return 2
     return 0
+
+
+def _apply_verbosity(level: Verbosity) -> list[str]:
+    """Set how much is said, and return the flags that it needs."""
+    if level is Verbosity.QUIET:
+        logging.getLogger("lightning.pytorch").setLevel(logging.ERROR)
+        return ["--trainer.enable_progress_bar=false", "--trainer.enable_model_summary=false"]
+    if level is Verbosity.VERBOSE:
+        print(f"train: {describe_versions(_PACKAGES)}", file=sys.stderr)
+    return []
 
 
 def describe_full_memory(error: Exception) -> str:

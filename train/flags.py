@@ -25,7 +25,7 @@ _SEEDS = 2**32
 _ONE_BATCH = "leave it at 1 and give a larger batch_size, or more processes"
 _FIXED = {
     "default_root_dir": (None, "the folder of a run is --run; leave this out"),
-    "model_registry": (None, "checkpoints are files here; give one with --ckpt_path"),
+    "model_registry": (None, "checkpoints are files here; give one with --ckpt-path"),
     "enable_checkpointing": (
         (None, True),
         "a run always keeps last.ckpt and best.ckpt; leave this out, or try a few steps without "
@@ -69,11 +69,11 @@ def check_flags(command: str, given: Namespace) -> None:
     seed = given.seed_everything
     if not isinstance(seed, bool) and not 0 <= seed < _SEEDS:
         raise InputError(
-            f"--seed_everything is {seed}; give a whole number from 0 to {_SEEDS - 1}."
+            f"--seed-everything is {seed}; give a whole number from 0 to {_SEEDS - 1}."
         )
     if given.weights_only is False:
         raise InputError(
-            "--weights_only is false, and checkpoints are only read as data, so that no code in "
+            "--weights-only is false, and checkpoints are only read as data, so that no code in "
             "them is run; leave it out."
         )
     if not given.run:

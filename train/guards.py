@@ -56,7 +56,7 @@ class FiniteGuard(Callback):
     def _explain(self, trainer: Trainer, what: str, names: list[str]) -> str:
         if (last := self.find_last()) is not None:
             remedy = (
-                f"Go on from the last good checkpoint with --ckpt_path {last} and "
+                f"Go on from the last good checkpoint with --ckpt-path {last} and "
                 "--trainer.gradient_clip_val 1 or --trainer.precision 32-true, or start again "
                 "with a lower --model.learning_rate."
             )

@@ -17,7 +17,7 @@ from lightning.fabric.utilities.exceptions import MisconfigurationException
 
 from skinnet.errors import InputError
 
-HELP = "python -m train fit --help lists the options"
+HELP = "python -m train fit --help lists the flags"
 
 _LIBRARIES = (
     "lightning",

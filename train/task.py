@@ -47,7 +47,7 @@ class SkinTask(LightningModule):
         weight_decay: Weight decay of AdamW.
         warmup_steps: Steps in which the learning rate rises; it then falls as a cosine to zero.
         weights: A .safetensors file or a checkpoint to start from (fine-tuning). To continue a run,
-            use --ckpt_path instead.
+            use --ckpt-path instead.
         other_preset: Whether the weights may belong to another preset, to which training then
             adapts them.
     """

@@ -113,9 +113,9 @@ REFUSED = [
     ("--ckpt_path=last", "There is no checkpoint last"),
     ("--ckpt_path=configs", "There is no checkpoint configs"),
     ("--ckpt_path=skinnet/inference/models/skin.onnx", "skin.onnx"),
-    ("--seed_everything=-3", "--seed_everything is -3"),
-    ("--seed_everything=99999999999", "--seed_everything is 99999999999"),
-    ("--weights_only=false", "--weights_only is false"),
+    ("--seed_everything=-3", "--seed-everything is -3"),
+    ("--seed_everything=99999999999", "--seed-everything is 99999999999"),
+    ("--weights_only=false", "--weights-only is false"),
     ("--run=", "--run is empty"),
 ]
 

@@ -129,7 +129,7 @@ def test_evaluation_refuses_to_run_untrained(
     command: str, capsys: pytest.CaptureFixture[str]
 ) -> None:
     assert main([command, "--config=configs/quick.yaml"]) == 2
-    assert "--ckpt_path" in capsys.readouterr().err
+    assert "--ckpt-path" in capsys.readouterr().err
 
 
 def test_evaluation_runs_a_checkpoint(fit: Fit, tmp_path: Path) -> None:

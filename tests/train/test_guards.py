@@ -43,7 +43,7 @@ def test_a_loss_that_is_no_number_stops_training_at_the_last_good_step(
     assert fit(run, "--trainer.max_epochs=2") == 2
     message = capsys.readouterr().err
     assert "step 5, where losses are not finite: train/synthetic_lighting, train/loss." in message
-    assert f"--ckpt_path {run / 'last.ckpt'}" in message
+    assert f"--ckpt-path {run / 'last.ckpt'}" in message
     assert read_checkpoint(run / "last.ckpt")["global_step"] == 5
     model = SkinAutoencoder.from_pretrained(run / "last.ckpt")
     assert not find_not_finite(model.state_dict())
