@@ -1,6 +1,7 @@
 """What stands between a texture's colours and the model's: light, camera, and a calibration."""
 
 import json
+import re
 from collections.abc import Callable
 from dataclasses import asdict, dataclass
 from functools import cached_property
@@ -23,6 +24,11 @@ from skinnet.physics.optics import SkinOptics
 from skinnet.physics.reflectance import SkinReflectance
 from skinnet.physics.sources import load_spectrum_to_srgb
 
+_LIGHT_WORDS = {"daylight": "D65", "flash": "D5500K", "tungsten": "A", "incandescent": "A"}
+"""Lights by the names that photographers give them, as of `Capture.from_names`."""
+
+_KELVIN = re.compile(r"\d{4,5}\s*k")
+
 _WAYS = ("exposure", "common", "full", "none")
 _NODES = (256, 256)
 _FEW_SCANS = 5
@@ -43,7 +49,8 @@ class ColourSettings:
     """How colours become pigments (sections 4.3 and 4.4).
 
     Args:
-        light: name of the light of the scans, or a CSV of wavelength in nm and power.
+        light: light of the scans, named as for photographs (D65, 5500K, flash, LED-B3), or a CSV
+            of wavelength in nm and power.
         camera: name of the camera, or a CSV of wavelength in nm and three sensitivities.
         optics: preset of the skin's constants.
         calibration: exposure (one factor a scan), common (one factor for all scans, of one light
@@ -67,12 +74,24 @@ class ColourSettings:
     refine: bool = True
     seed: int = 0
 
+    @property
+    def light_name(self) -> str:
+        """The light by the name that `load_light` knows."""
+        folded = self.light.strip().casefold()
+        if _KELVIN.fullmatch(folded):
+            return f"D{folded}"
+        return _LIGHT_WORDS.get(folded, self.light)
+
     def check(self) -> None:
         """Raise `InputError` for names and files that cannot be used, before long work begins."""
+<<<<<<< HEAD
         _check_count("seed", self.seed)
         for name in ("f_mel", "f_blood"):  # as the table does, which is made after the fits
             _check_axis(name, *getattr(self, name))
-        load_spectrum_to_srgb(self.light, self.camera)
+        load_spectrum_to_srgb(self.light_name, self.camera)
+=======
+        load_spectrum_to_srgb(self.light_name, self.camera)
+>>>>>>> origin/cli
         SkinOptics.preset(self.optics)
         self.balance()
         if self.calibration not in _WAYS:
@@ -91,7 +110,7 @@ class ColourSettings:
             InputError: The colours do not determine the calibration that is asked for.
         """
         samples = [self.balance() * one for one in samples]
-        matrix = load_spectrum_to_srgb(self.light, self.camera).numpy()
+        matrix = load_spectrum_to_srgb(self.light_name, self.camera).numpy()
         ways: dict[str, Callable[[], _ScanCalibration]] = {
             "exposure": lambda: self._fit_exposures(matrix, samples),
             "common": lambda: self._fit_common_exposure(matrix, samples),
@@ -167,7 +186,7 @@ class ColourSettings:
         return _ScanCalibration(transform, [1.0] * len(samples), {"file": str(path)})
 
     def _make_colour(self, matrix: _Matrix, transform: Float[np.ndarray, "3 3"]) -> SkinColour:
-        return SkinColour(matrix, transform, self.optics, _NODES, self.light, self.camera)
+        return SkinColour(matrix, transform, self.optics, _NODES, self.light_name, self.camera)
 
     def _tabulate_model(self, matrix: _Matrix) -> Float[np.ndarray, "mel blood 3"]:
         """Tabulate the colours of the model over the ranges of the fractions, a few thousand."""

@@ -23,17 +23,19 @@ def make(verb: str) -> VerbParser:
 
 @pytest.mark.parametrize(("verb", "command"), EXAMPLES)
 def test_an_example_is_a_command(verb: str, command: str) -> None:
-    program, name, *arguments = shlex.split(command)
-    assert (program, name) == ("skinnet", verb)
-    make(verb).parse(arguments)
+    words = shlex.split(command)  # perhaps with a pipe before it and a redirection after it
+    start = words.index("skinnet")
+    end = words.index(">") if ">" in words else len(words)
+    assert words[start + 1] == verb
+    make(verb).parse(words[start + 2 : end])
 
 
 @pytest.mark.parametrize("verb", PHOTO_VERBS)
 def test_help_ends_with_examples(verb: str) -> None:
     text = make(verb).format_help()
-    shown = re.findall(r"^  (skinnet .+)$", text.partition("examples:\n")[2], re.MULTILINE)
+    shown = re.findall(r"^  (.*skinnet .+)$", text.partition("examples:\n")[2], re.MULTILINE)
     assert shown == [command for each, command in EXAMPLES if each == verb]
-    assert 2 <= len(shown) <= 3
+    assert 2 <= len(shown) <= 5
 
 
 @pytest.mark.parametrize("verb", PHOTO_VERBS)
