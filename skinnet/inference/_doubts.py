@@ -74,6 +74,36 @@ def list_doubts(
     return (*little, *note_clipping(who, photo, mask), *dark, *doubts)
 
 
+def list_edit_doubts(
+    who: str,
+    mask: NDArray[np.float32],
+    chromaticity: tuple[float, float] | None,
+    is_white_known: bool,
+) -> tuple[str, ...]:
+    """List what makes an edit doubtful.
+
+    Args:
+        who: What was edited, such as `the face in a.jpg`.
+        mask: Probability of skin [H, W] in what was read.
+        chromaticity: Log R/G and log B/G of the skin before the edit; None if they are not known.
+        is_white_known: Whether the white balance was given.
+    """
+    share = float(np.mean(mask > SKIN_THRESHOLD))
+    doubts = []
+    if 0 < share < _LITTLE_SKIN:
+        doubts.append(
+            f"Nearly no skin of {who} was found, only {100 * share:.1g} % of what was read; "
+            "nothing else is edited."
+        )
+    tint = None if is_white_known or chromaticity is None else find_tint(chromaticity)
+    if tint is not None:
+        doubts.append(
+            f"The skin of {who} looks tinted {tint}, as by coloured light, a filter or a wrong "
+            "white balance; the edit is only as right as the guess of it."
+        )
+    return tuple(doubts)
+
+
 def note_doubts(
     who: str,
     face_sd: tuple[float, float],

@@ -15,7 +15,7 @@ from skinnet.images.faces._face_parts import find_face_parts
 from skinnet.images.picture import Picture
 from skinnet.inference._capture_inputs import CaptureLike, Inputs, join_captures, name_known
 from skinnet.inference._capture_names import name_camera, name_light
-from skinnet.inference._doubts import list_doubts
+from skinnet.inference._doubts import list_doubts, list_edit_doubts
 from skinnet.inference._edit_mask import check_edit_mask
 from skinnet.inference._edited import Edited, EditedFace
 from skinnet.inference._editing import ColourMeans
@@ -183,9 +183,12 @@ class SubjectReader:
         encoder_outputs, skin = self._read(photo, subject, known)
         skin = np.where(subject.crop.find_inside(), skin, np.float32(0))  # as the mask of a reading
         alpha = None if colour.alpha is None else colour.alpha[box.slices]
+        colours = measure_chromaticity(photo[box.slices], skin)
+        is_white_known = "known_white_balance" in known
+        doubts = list_edit_doubts(subject.describe(name), skin, colours, is_white_known)
         outputs = select_edited(encoder_outputs)
         means = edit_in_place(colour, subject.crop, outputs, skin, factors, self.decoder, share)
-        return means, (*note_transparency(alpha, skin, name), *subject.notes)
+        return means, (*note_transparency(alpha, skin, name), *subject.notes, *doubts)
 
     def _read(
         self, photo: NDArray[np.uint8], subject: Subject, known: Inputs

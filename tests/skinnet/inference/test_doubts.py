@@ -9,6 +9,7 @@ from skinnet.images.srgb import linear_to_srgb, srgb_to_linear, to_uint8
 from skinnet.inference import Capture
 from skinnet.inference._doubts import (
     find_tint,
+    list_edit_doubts,
     note_clipping,
     note_dark_skin,
     note_doubts,
@@ -110,6 +111,8 @@ def test_a_tinted_photograph_is_noted(
     notes = Decomposer(threads=1)(photo, name="a.jpg", detail=False).notes
     words = f"The skin of {WHO} looks tinted {tint}, as by coloured light, a filter or a "
     assert any(note.startswith(words) for note in notes) == (tint is not None)
+    edited = Decomposer(threads=1).edit_picture(read_picture(photo), 2.0, name="a.jpg").notes
+    assert any(note.startswith(words) for note in edited) == (tint is not None)
     assert tint is not None or not any("tinted" in note for note in notes)
 
 
@@ -138,6 +141,28 @@ def test_nearly_no_skin_is_noted() -> None:
     )
     mask[:20] = 1
     assert note_little_skin(WHO, mask) == ()
+
+
+@pytest.mark.parametrize(
+    ("ratios", "is_white_known", "tint"),
+    [((0.75, -0.3), False, None), ((0.1, -1.4), False, "green"), ((0.1, -1.4), True, None)],
+)
+def test_an_edit_of_tinted_skin_is_doubtful(
+    ratios: tuple[float, float], is_white_known: bool, tint: str | None
+) -> None:
+    notes = list_edit_doubts(WHO, np.ones((4, 4), np.float32), ratios, is_white_known)
+    said = f"The skin of {WHO} looks tinted {tint}, as by coloured light, "
+    assert [note.startswith(said) for note in notes] == ([] if tint is None else [True])
+
+
+def test_an_edit_of_hardly_any_skin_is_doubtful() -> None:
+    mask = np.zeros((100, 100), np.float32)
+    assert list_edit_doubts(WHO, mask, None, False) == ()
+    mask[:2] = 1
+    (said,) = list_edit_doubts(WHO, mask, (0.75, -0.3), False)
+    assert said == (
+        f"Nearly no skin of {WHO} was found, only 2 % of what was read; nothing else is edited."
+    )
 
 
 def test_a_covered_face_is_noted(astronaut: np.ndarray) -> None:
