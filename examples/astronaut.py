@@ -39,7 +39,7 @@ def main() -> None:
     TARGET.parent.mkdir(exist_ok=True)
     write_png(TARGET, draw_grid(tiles, 6))
 
-    for name, numbers in decomposition.summary()["maps"].items():
+    for name, numbers in decomposition.to_dict()["maps"].items():
         print(f"{name:12} {numbers['mean']:8.4f} +- {numbers['std']:.4f} {numbers['unit']}")
     print(f"written: {TARGET}")
 

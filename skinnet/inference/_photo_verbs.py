@@ -130,7 +130,7 @@ def _write(
             notes = (*notes, f"{others}; the results of {source.name} are numbered: {stem}.")
         results = []
         for each in decompositions:
-            summary = {"file": source.name, "input": source.describe(folder)} | each.summary()
+            summary = {"file": source.name, "input": source.describe(folder)} | each.to_dict()
             summary["notes"] = [*notes, *summary["notes"]]
             results.append(_Result(stem + _name_part(each, len(decompositions)), each, summary))
         count = _write_all(folder, results, picture.srgb, source.digest)
