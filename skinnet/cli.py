@@ -10,8 +10,14 @@ from typing import Any
 
 from skinnet.errors import InputError
 from skinnet.inference._command import completion
+from skinnet.inference._command.assumptions import (
+    PHOTO_PACKAGES,
+    SCAN_PACKAGES,
+    describe_assumptions,
+    describe_versions,
+)
 from skinnet.inference._command.nearest import suggest
-from skinnet.inference._command.overview import describe_verbs, describe_versions
+from skinnet.inference._command.overview import describe_verbs
 from skinnet.inference._command.photo_verbs import PHOTO_VERBS
 from skinnet.inference._command.verb_parser import VerbParser, read_verbosity, take_verbosity
 from skinnet.inference._messages import (
@@ -77,7 +83,7 @@ def _run(arguments: list[str]) -> int:
     flags = arguments[:count]
     verb, *rest = arguments[count:] or [""]
     if "--version" in flags:
-        print_line(describe_versions())
+        print_line(describe_versions(PHOTO_PACKAGES if {"-v", "--verbose"} & {*flags} else ()))
         return _OK
     if verb == "help":
         verb, rest = (rest[0], ["--help"]) if rest else ("", [])
@@ -132,6 +138,9 @@ def _run_verb(verb: str, arguments: list[str]) -> int:
     if verb == _COMPLETION:
         print_line(completion.write_script(options.shell, _make_parsers()))
         return _OK
+    if get_verbosity() is Verbosity.VERBOSE:
+        explain(describe_versions(PHOTO_PACKAGES))
+        explain(describe_assumptions(parser, options))
     return _run_photo_verb(verb, options)
 
 
@@ -166,6 +175,8 @@ def _wants_help(arguments: list[str]) -> bool:
 def _run_pipeline(parser: VerbParser, verb: str, arguments: list[str]) -> int:
     level, arguments = take_verbosity(check_flags(parser, verb, arguments))
     set_verbosity(level)
+    if level is Verbosity.VERBOSE:
+        explain(describe_versions(SCAN_PACKAGES))
     try:
         from skinnet.pipeline._command import run_verb
 

@@ -1,5 +1,6 @@
 """The verbs of the classic pipeline, with settings from YAML and flags."""
 
+import json
 from collections.abc import Sequence
 from importlib import import_module
 from typing import Any
@@ -7,6 +8,7 @@ from typing import Any
 from jsonargparse import Namespace
 
 from skinnet.inference._command.spelling import spell_keys
+from skinnet.inference._messages import explain
 from skinnet.pipeline._sentence_parser import SentenceParser
 from skinnet.pipeline._verbs import PIPELINE_VERBS
 
@@ -32,7 +34,9 @@ def run_verb(verb: str, arguments: Sequence[str]) -> int:
     """
     module: Any = import_module(f"skinnet.pipeline._{verb.replace('-', '_')}")
     parser = make_settings_parser(verb, module)
-    config: Namespace = parser.instantiate(parser.parse_args(spell_keys(arguments)))
+    parsed: Namespace = parser.parse_args(spell_keys(arguments))
+    explain(f"settings: {json.dumps(parsed.as_dict(), default=str)}")
+    config: Namespace = parser.instantiate(parsed)
     code: int = module.run(config)
     return code
 

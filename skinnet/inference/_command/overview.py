@@ -1,8 +1,7 @@
-"""What `skinnet` alone prints: its verbs, and its version."""
+"""What `skinnet` alone prints: its verbs."""
 
 from collections.abc import Mapping
 
-from skinnet._version import __version__
 from skinnet.inference._command import completion
 from skinnet.inference._command.photo_verbs import PHOTO_VERBS
 
@@ -48,11 +47,6 @@ def describe_verbs(scans: Mapping[str, str]) -> str:
     """
     photographs = {name: verb.summary for name, verb in PHOTO_VERBS.items()}
     return _TEXT.format(photographs=_list(photographs), scans=_list(scans), more=_list(_MORE))
-
-
-def describe_versions() -> str:
-    """Name the program and its version."""
-    return f"skinnet {__version__}"
 
 
 def _list(verbs: Mapping[str, str]) -> str:
