@@ -163,7 +163,7 @@ def measure_peak_growth(fast: bool, images: int, size: int) -> int:
     step(picture, sample_scene(images, 8), torch.ones(images, 3, 8, 8))
     scene, weight = sample_scene(images, size), torch.ones(images, 3, size, size)
     # The peak so far is that of the imports; writing 5 resets it.
-    Path("/proc/self/clear_refs").write_text("5")
+    Path("/proc/self/clear_refs").write_text("5", encoding="utf-8")
     before = read_resident_kb("VmRSS")
     step(picture, scene, weight)
     return read_resident_kb("VmHWM") - before

@@ -61,7 +61,7 @@ def list_portraits(folder: Path, every: int = 1) -> list[KnownFace]:
 
 def read_template(path: Path) -> NDArray[np.float64]:
     """Read the columns and rows [189, 2] of a template of the London set."""
-    count = int(path.read_text().split(maxsplit=1)[0])
+    count = int(path.read_text(encoding="utf-8").split(maxsplit=1)[0])
     return np.loadtxt(path, skiprows=1, max_rows=count)
 
 

@@ -17,5 +17,5 @@ def time_least(action: Callable[[], object], repeats: int) -> float:
 
 def read_resident_kb(name: str) -> int:
     """Read the resident memory of this process now (VmRSS) or at its peak (VmHWM); Linux only."""
-    lines = Path("/proc/self/status").read_text().splitlines()
+    lines = Path("/proc/self/status").read_text(encoding="utf-8").splitlines()
     return next(int(line.split()[1]) for line in lines if line.startswith(name))

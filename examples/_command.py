@@ -6,11 +6,11 @@ from pathlib import Path
 
 import numpy as np
 from numpy.typing import NDArray
+from PIL import Image
 
 from skinnet.errors import InputError
-from skinnet.files import make_folder
+from skinnet.files import make_folder, write_atomically
 from skinnet.images._mark import Mark, read_mark
-from skinnet.images._png_file import write_png
 
 _VERB = "example"
 
@@ -45,8 +45,17 @@ def check_picture(path: Path, default: Path, example: str) -> None:
         )
 
 
-def write_picture(path: Path, picture: NDArray[np.uint8], example: str) -> None:
-    """Write a picture that says which example made it."""
+def write_picture(
+    path: Path, picture: NDArray[np.uint8], example: str, palette: bool = False
+) -> None:
+    """Write a picture, as small as PNG can, that says which example made it.
+
+    With `palette` it has 256 colours, which is enough for a chart, and too few for skin.
+    """
     make_folder(path.parent, "choose another file with -o")
-    write_png(path, picture, Mark(_VERB, example).to_text())
+    image = Image.fromarray(picture)
+    text = Mark(_VERB, example).to_png_info()
+    with write_atomically(path) as part:
+        kept = image.quantize(256) if palette else image
+        kept.save(part, format="PNG", optimize=True, pnginfo=text)
     print(f"written: {path}")

@@ -1,48 +1,64 @@
 """Melanin and hemoglobin of a photograph, and two edits of them, with the shipped model.
 
-    python -m examples.astronaut          # writes demo/astronaut.png
+    python -m examples.astronaut [-o demo/astronaut.png]
 
 The photograph is NASA's portrait of Eileen Collins, public domain, which comes with scikit-image.
 """
 
+import argparse
+import sys
 from pathlib import Path
 
+import numpy as np
+from numpy.typing import NDArray
 from skimage.data import astronaut
 
+from examples._command import check_picture, run, write_picture
 from skinnet import Decomposer
-from skinnet.images._png_file import write_png
 from skinnet.inference._tiles import draw_grid, draw_picture, draw_pigment_map
 
 TARGET = Path("demo/astronaut.png")
 
 
-def main() -> None:
-    """Write a row of tiles: photograph, two maps, reconstruction, two edits."""
+def draw_row() -> NDArray[np.uint8]:
+    """Draw a row of tiles: photograph, two maps, reconstruction, two edits."""
     decomposer = Decomposer()
     photo = astronaut()
-    decomposition = decomposer(photo)
-    head = decomposition.box.slices
-    mask = decomposition.mask[head]
+    face = decomposer(photo)
+    head = face.box.slices
+    mask = face.mask[head]
 
     # Half as much melanin again looks like a tan, twice the blood like a flush.
     tanned = decomposer.edit(photo, melanin=1.5)
     flushed = decomposer.edit(photo, hemoglobin=2.0)
 
+    for name, numbers in face.summary()["maps"].items():
+        print(f"{name:12} {numbers['mean']:8.4f} +- {numbers['std']:.4f} {numbers['unit']}")
     tiles = [
         draw_picture("photograph", photo[head]),
-        draw_pigment_map("melanin", decomposition.melanin[head], mask),
-        draw_pigment_map("hemoglobin", decomposition.hemoglobin[head], mask),
-        draw_picture("reconstruction", decomposition.reconstruction[head]),
+        draw_pigment_map("melanin", face.melanin[head], mask),
+        draw_pigment_map("hemoglobin", face.hemoglobin[head], mask),
+        draw_picture("reconstruction", face.reconstruction[head]),
         draw_picture("melanin x 1.5", tanned[head]),
         draw_picture("hemoglobin x 2", flushed[head]),
     ]
-    TARGET.parent.mkdir(exist_ok=True)
-    write_png(TARGET, draw_grid(tiles, 6))
+    return draw_grid(tiles, len(tiles))
 
-    for name, numbers in decomposition.to_dict()["maps"].items():
-        print(f"{name:12} {numbers['mean']:8.4f} +- {numbers['std']:.4f} {numbers['unit']}")
-    print(f"written: {TARGET}")
+
+def main(arguments: list[str] | None = None) -> int:
+    """Draw the row and write it; return 2 for arguments that cannot be used."""
+    parser = argparse.ArgumentParser(
+        description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter
+    )
+    parser.add_argument("-o", "--output", type=Path, default=TARGET)
+    options = parser.parse_args(arguments)
+
+    def draw() -> None:
+        check_picture(options.output, TARGET, "astronaut")
+        write_picture(options.output, draw_row(), "astronaut")
+
+    return run(draw)
 
 
 if __name__ == "__main__":
-    main()
+    sys.exit(main())

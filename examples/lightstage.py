@@ -12,6 +12,7 @@ import argparse
 import json
 import shlex
 import sys
+from collections.abc import Sequence
 from pathlib import Path
 
 import numpy as np
@@ -38,6 +39,10 @@ FILTER = np.array([[0.80, 0.05, 0.01], [0.03, 0.86, 0.04], [0.01, 0.06, 0.92]])
 """Colour transform of the polariser, which the commands do not know."""
 
 PIGMENTS = ("f_mel", "f_blood")
+
+_VARIETY = 0.5
+"""Standard deviations of the shape model for one of the people. With whole ones, a nose tip or an
+eye may lie so far off that trimmed ICP takes it for an outlier, and its texels are then unknown."""
 
 
 def paint_person(number: int, people: int, texels: int) -> dict[str, np.ndarray]:
@@ -76,7 +81,7 @@ def _simplify(face: FaceParameters, f_mel: float) -> FaceParameters:
 def write_person(path: Path, truth: dict[str, np.ndarray], colour: SkinColour, people: int) -> None:
     """Write a scan of that person as OBJ with PNG and landmarks, and the true maps as .npz."""
     model = load_shape_model()
-    alpha = truth["variates"][: len(model.variances)] * np.sqrt(model.variances)
+    alpha = _VARIETY * truth["variates"][: len(model.variances)] * np.sqrt(model.variances)
     mesh = model.build_mesh(alpha)
     flat = [torch.from_numpy(truth[name]).flatten()[None] for name in PIGMENTS]
     skin = colour.skin(*flat)[0].reshape(3, *truth["f_mel"].shape).numpy()
@@ -145,8 +150,10 @@ def main(arguments: list[str] | None = None) -> int:
     return run_command(lambda: study(options.output, options.people, options.texels))
 
 
-def study(folder: Path, people: int, texels: int) -> None:
-    """Paint people, and run the commands on their scans."""
+def study(
+    folder: Path, people: int, texels: int, effects: Sequence[str] = ("false", "true")
+) -> None:
+    """Paint people, and run the commands on their scans; a model for each scaling of features."""
     check_number("people", people, 3, 999)
     check_number("texels", texels, 16, 8192)
     make_folder(folder, "choose another folder with -o")
@@ -161,7 +168,7 @@ def study(folder: Path, people: int, texels: int) -> None:
     run("maps", *scans, *light, f"--warp.size={texels}", "--warp.own_uv=true", "-o", maps)
     report(scans, maps)
     files = [maps / f"{scan.stem}_maps.npz" for scan in scans]
-    for effect in ("false", "true"):
+    for effect in effects:
         output = folder / ("model" if effect == "false" else "model_effect")
         run("build-model", *files, "-o", output, f"--appearance.effect={effect}", "--joint=true")
 

@@ -132,6 +132,9 @@ def names(folder: Path) -> list[str]:
 def strip_marks(folder: Path, keep: tuple[str, ...] = ("map", "scale", "offset", "unit")) -> None:
     """Turn results into those of versions that had no marks."""
     for path in folder.glob("*.png"):
+        if path.stem.endswith("_colour"):  # those versions wrote none
+            path.unlink()
+            continue
         with Image.open(path) as image:
             text = {key: value for key, value in image.text.items() if key in keep}
             array = np.array(image)

@@ -22,6 +22,7 @@ OUTSIDE = {
     "skinnet/inference/models/CHANGELOG.md": "model-changes.md",
     "demo/astronaut.png": "demo/astronaut.png",
     "demo/face_parts.png": "demo/face_parts.png",
+    "demo/strip.png": "demo/strip.png",
     "demo/tones.png": "demo/tones.png",
 }
 """Files of the repository, and where they are in the guide."""

@@ -37,20 +37,55 @@ def write_png(path: Path, array: NDArray[Any], text: Mapping[str, str] | None = 
         >>> read_photo(path).shape
         (2, 3, 3)
     """
-    from imagecodecs import deflate_encode
-
     kind = (array.dtype, array.shape[2:])
     if kind not in _HEADERS:
         raise ValueError(f"PNG is written from uint8 [H, W, 3] or uint16 [H, W]; got {kind}.")
+    _write(path, array, _HEADERS[kind], [], text or {})
+
+
+def write_palette_png(
+    path: Path,
+    pixels: NDArray[np.uint8],
+    palette: NDArray[np.uint8],
+    text: Mapping[str, str] | None = None,
+) -> None:
+    """Write a PNG file of at most 256 colours, completely or not at all.
+
+    Args:
+        path: The file to write.
+        pixels: Numbers of colours, uint8 [H, W].
+        palette: The colours, uint8 sRGB [colours, 3].
+        text: What to write into the file as tEXt chunks, by keyword.
+
+    Example:
+        >>> from tempfile import mkdtemp
+        >>> path = Path(mkdtemp()) / "a.png"
+        >>> write_palette_png(path, np.eye(4, dtype=np.uint8), np.full((2, 3), 9, np.uint8))
+        >>> path.stat().st_size < 120
+        True
+    """
+    _write(path, pixels, (8, 3), [(b"PLTE", palette.tobytes())], text or {})
+
+
+def _write(
+    path: Path,
+    array: NDArray[Any],
+    kind: tuple[int, int],
+    palette: list[tuple[bytes, bytes]],
+    text: Mapping[str, str],
+) -> None:
+    """Write rows of pixels with their bits of a channel and colour type."""
+    from imagecodecs import deflate_encode
+
     height, width = array.shape[:2]
-    header = struct.pack(">IIBBBBB", width, height, *_HEADERS[kind], 0, 0, 0)
+    header = struct.pack(">IIBBBBB", width, height, *kind, 0, 0, 0)
     # The fast level: the low bits of interpolated maps are noise that no level compresses.
     content: Any = deflate_encode(
         _filter_rows(array),  # type: ignore[arg-type]  # any buffer
         level=1,
     )
-    texts = [make_text(key, value) for key, value in (text or {}).items()]
-    chunks = [(b"IHDR", header), *texts, (b"IDAT", content), (b"IEND", b"")]
+    texts = [make_text(key, value) for key, value in text.items()]
+    chunks = [(b"IHDR", header), *palette, *texts, (b"IDAT", content), (b"IEND", b"")]
     with write_atomically(path) as part, part.open("wb") as file:
         file.write(SIGNATURE)
         file.writelines(pack_chunks(chunks))

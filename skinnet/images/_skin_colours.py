@@ -11,7 +11,8 @@ from skinnet.images.srgb import LUMINANCE_WEIGHTS
 _MIN_COVARIANCE = np.diag([0.06, 0.07, 0.32]) ** 2
 """Least covariance of log R/G, log B/G and log luminance: shading and noise of even skin."""
 
-_SKIN, _SKIN_PRECISION = np.array([0.757, -0.296]), np.array([[37.1, 13.6], [13.6, 33.4]])
+USUAL_RATIOS = np.array([0.757, -0.296])
+_SKIN_PRECISION = np.array([[37.1, 13.6], [13.6, 33.4]])
 """log R/G and log B/G of skin in portraits of all tones: mean and inverse covariance."""
 
 _SPECULAR_SHARES = (0.15, 0.3, 0.45, 0.6, 0.75, 0.9)
@@ -34,7 +35,7 @@ def compute_features(linear: _Array) -> _Array:
 
 def measure_usual_squares(ratios: _Array) -> _Array:
     """Squared Mahalanobis distances [...] of log R/G and log B/G [..., 2] from all skin."""
-    difference = ratios - _SKIN
+    difference = ratios - USUAL_RATIOS
     squares: _Array = np.einsum("...i,ij,...j->...", difference, _SKIN_PRECISION, difference)
     return squares
 

@@ -9,6 +9,7 @@ from numpy.typing import ArrayLike, NDArray
 from skinnet.errors import InputError
 from skinnet.images._walk import STDIN
 from skinnet.images.photograph import read_picture
+from skinnet.images.picture import Picture
 
 _LARGEST_DIFFERENCE = 0.08
 """Largest difference between red, green and blue of a grey, of white; conversions leave some."""
@@ -34,11 +35,7 @@ def read_edit_mask(path: Path) -> NDArray[Any]:
     if str(path) == STDIN:
         raise InputError("--mask takes a file, since standard input is for the photograph; got - .")
     picture = read_picture(path)
-    top = int(np.iinfo(picture.pixels.dtype).max)
-    values = _to_grey(picture.pixels, top, str(path))
-    if picture.alpha is not None:
-        blended = np.rint(values.astype(np.float64) * picture.alpha / top)
-        values = blended.astype(values.dtype)
+    values = _to_grey(_hide_transparent(picture), str(path))
     if not values.any():
         raise InputError(f"{path} is black everywhere, so nothing would be edited. {_MEANING}.")
     _refuse_labels(values, str(path))
@@ -72,13 +69,23 @@ def check_edit_mask(
     return mask
 
 
-def _to_grey(pixels: NDArray[Any], top: int, name: str) -> NDArray[Any]:
+def _hide_transparent(picture: Picture) -> NDArray[Any]:
+    """The stored pixels, as far as they are transparent mixed with black."""
+    pixels, alpha = picture.pixels, picture.alpha
+    if alpha is None:
+        return pixels
+    weight = alpha if pixels.ndim == 2 else alpha[..., None]
+    mixed = np.rint(pixels.astype(np.float64) * weight / np.iinfo(pixels.dtype).max)
+    return np.asarray(mixed.astype(pixels.dtype))
+
+
+def _to_grey(pixels: NDArray[Any], name: str) -> NDArray[Any]:
     if pixels.ndim == 2:
         return pixels
     if pixels.shape[2] != 3:
         raise InputError(f"{name} is CMYK, and a mask is grey. {_MEANING}; save it as grey.")
-    low, high = pixels.min(-1), pixels.max(-1)
-    if int((high - low).max()) > _LARGEST_DIFFERENCE * top:
+    difference = int((pixels.max(-1) - pixels.min(-1)).max())
+    if difference > _LARGEST_DIFFERENCE * np.iinfo(pixels.dtype).max:
         raise InputError(f"{name} is coloured, and a mask is grey. {_MEANING}; save it as grey.")
     return np.asarray(pixels[..., 1])
 

@@ -146,9 +146,18 @@ def _refuse_file(path: Path, count: int) -> None:
 
 
 def _check_format(path: Path, suffix: str) -> None:
+    if not path.suffix:
+        raise InputError(
+            f"{path} has no ending that names a format, such as .jpg or .png; if it is to be a "
+            f"folder, give {path}{os.sep} with -o."
+        )
     wanted = find_format(path)
     if suffix and find_format(Path(f"a{suffix}")) is not wanted:
         raise InputError(
             f"{path} is {wanted.name} by its ending, and --format {suffix[1:]} is another; leave "
             "out one."
+        )
+    if not path.parent.exists():
+        raise InputError(
+            f"{path} cannot be written, since there is no folder {path.parent}; make it first."
         )

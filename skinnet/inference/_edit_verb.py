@@ -24,7 +24,7 @@ from skinnet.inference._edit_place import STANDARD_OUTPUT, EditPlace, Output
 from skinnet.inference._edited import Edited
 from skinnet.inference._face_choice import check_choice
 from skinnet.inference._input_run import NotWrittenError, describe_totals, is_one_file, run_over
-from skinnet.inference._messages import note, print_line, report
+from skinnet.inference._messages import explain, note, print_line, report
 from skinnet.inference._own_results import Source
 from skinnet.inference._photo_verbs import _make_decomposer, _read
 from skinnet.inference._pigment_edit import check_factors
@@ -94,8 +94,7 @@ class _EditRun:
         with TemporaryDirectory() as folder:
             path = Path(folder) / f"{source.stem}_{EDITED}{suffix}"
             notes = write_picture(path, edited.picture, mark, quality, STANDARD_OUTPUT)
-            sys.stdout.buffer.write(path.read_bytes())
-            sys.stdout.buffer.flush()
+            _send(path.read_bytes())
         return None, notes
 
     def _print(
@@ -108,6 +107,8 @@ class _EditRun:
     ) -> None:
         for sentence in notes:
             note(sentence)
+        for face in edited.faces:
+            explain(face.describe(source.name))
         if target is None:
             return
         if self.options.json:
@@ -145,6 +146,8 @@ def edit(options: argparse.Namespace) -> bool:
     decomposer = _make_decomposer(options)
     decomposer.load()
     told = ToldCapture.from_options(options, decomposer, len(found.pictures))
+    if mask is not None and len(found.pictures) > 1:
+        note(f"{options.mask} is the mask of all {len(found.pictures)} photographs.")
     run = _EditRun(decomposer, options, told, place, mask)
     totals = run_over(found, run.edit_one, lambda _, error: report(error), options.json)
     for sentence in found.notes:
@@ -152,6 +155,23 @@ def edit(options: argparse.Namespace) -> bool:
     if not is_one_file(found, options.input):
         note(describe_totals(totals, found, "edited", place.describe()))
     return not totals.failures
+
+
+def _send(data: bytes) -> None:
+    """Write to standard output.
+
+    Raises:
+        InputError: It cannot be written, for instance since a disk is full.
+    """
+    try:
+        sys.stdout.buffer.write(data)
+        sys.stdout.buffer.flush()
+    except BrokenPipeError:
+        raise
+    except OSError as error:
+        raise InputError(
+            f"Standard output cannot be written ({error.strerror}); give a file with -o."
+        ) from error
 
 
 def _check(options: argparse.Namespace) -> None:

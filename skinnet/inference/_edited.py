@@ -28,6 +28,20 @@ class EditedFace(NamedTuple):
     box: Box
     means: ColourMeans
 
+    def describe(self, name: str) -> str:
+        """Say in a sentence what has changed in a photograph of a name."""
+        who = f"face {self.face_id} in {name}" if self.face_id else f"the skin in {name}"
+        before, after = (
+            ",".join(f"{level:.0f}" for level in _to_levels(each) or ())
+            for each in (self.means.before, self.means.after)
+        )
+        if not before:
+            return f"No pixel of {who} is edited."
+        return (
+            f"{self.means.weight:,.0f} pixels of {who} are edited; their mean colour in sRGB "
+            f"is {before} before and {after} after."
+        )
+
     def to_json(self) -> dict[str, Any]:
         """Return it for JSON: colours as sRGB from 0 to 255, null where no skin was edited."""
         colours = {"before": self.means.before, "after": self.means.after}

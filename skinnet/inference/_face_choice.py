@@ -32,10 +32,10 @@ def choose_faces(found: Sequence[Face], faces: FaceChoice) -> list[int]:
 
 
 def note_others(found: int, read: int, name: str) -> tuple[str, ...]:
-    """Note how many faces were found and are not read."""
+    """Note that a photograph shows several faces, and how many of them are not read."""
     more = found - read
     if more < 1:
-        return ()
+        return (f"{name} shows {found} faces, numbered from left to right.",) * (found > 1)
     faces, them = ("face was", "it") if more == 1 else ("faces were", "them")
     return (
         f"{more} more {faces} found in {name}; --faces all "

@@ -26,7 +26,7 @@ from skinnet.inference._person_shot import PersonShot, describe_shot
 from skinnet.inference._photo_verbs import _make_decomposer, _read
 from skinnet.inference._tiles import TILE
 from skinnet.inference._told_capture import ToldCapture
-from skinnet.inference._uncertainty import describe_mean
+from skinnet.inference._usual_values import describe_reading
 from skinnet.inference.decomposer import Decomposer
 from skinnet.inference.person import Person
 from skinnet.inference.results import _describe_fault, _make_folder
@@ -147,8 +147,9 @@ def _print(fused: Person, summary: dict[str, Any], files: str, as_json: bool) ->
         print_line(json.dumps(summary, allow_nan=False))
         return
     intervals = fused.interval()
+    optics = fused._read[0].model.get("optics")
     numbers = ", ".join(
-        f"{name} {describe_mean(mean, intervals[name])}" for name, mean in fused.means.items()
+        describe_reading(name, mean, intervals[name], optics) for name, mean in fused.means.items()
     )
     used = [session for session in fused.sessions if session is not None]
     sessions = f"{max(used)} session{'s' * (max(used) > 1)}"

@@ -27,11 +27,13 @@ from skinnet.inference._input_run import (
 )
 from skinnet.inference._messages import describe, note, print_line, report
 from skinnet.inference._own_results import Source, choose_result_stem
+from skinnet.inference._report.html_report import NAME, FaceReport
 from skinnet.inference._told_capture import ToldCapture
-from skinnet.inference._uncertainty import describe_mean
+from skinnet.inference._usual_values import describe_reading
 from skinnet.inference.decomposer import Decomposer
 from skinnet.inference.decomposition import Decomposition
 from skinnet.inference.results import (
+    _describe_map_files,
     _list_all_ends,
     _make_folder,
     _name_part,
@@ -47,18 +49,30 @@ def predict(options: argparse.Namespace) -> bool:
     decomposer.load()
     found = walk(options.input, options.recursive)
     told = ToldCapture.from_options(options, decomposer, len(found.pictures))
-    table = FaceTable(options.csv)
+    table, page = FaceTable(options.csv), FaceReport(_choose_report(options, found))
     totals = run_over(
         found,
-        lambda picture: _predict_one(decomposer, picture, options, told, table),
-        lambda name, error: _report_failure(table, name, error),
+        lambda picture: _predict_one(decomposer, picture, options, told, table, page),
+        lambda name, error: _report_failure(table, page, name, error),
         quiet=options.json,
     )
     for sentence in (*found.notes, *table.notes):
         note(sentence)
+    total = describe_totals(totals, found, "read", _describe_place(found, options.output))
+    page.finish(total)
     if not is_one_file(found, options.input):
-        note(describe_totals(totals, found, "read", _describe_place(found, options.output)))
+        note(total if page.path is None else f"{total} The report is {page.path}.")
     return not totals.failures
+
+
+def _choose_report(options: argparse.Namespace, found: Walk) -> Path | None:
+    """The page that is asked for; without a name it lies in the folder of the first maps."""
+    report: Path | None = options.report
+    if report is None or report.name:
+        return report
+    first = next((Path(each.path).parent for each in found.pictures), Path())
+    folder: Path = options.output or first / OUTPUT
+    return folder / NAME
 
 
 def _describe_place(found: Walk, output: Path | None) -> str:
@@ -82,6 +96,7 @@ def _predict_one(
     options: argparse.Namespace,
     told: ToldCapture,
     table: FaceTable,
+    page: FaceReport,
 ) -> int:
     """Decompose a picture, and write its results. Returns the number of faces in them."""
     source, picture, notes = _read(found)
@@ -95,15 +110,18 @@ def _predict_one(
         capture=known,
     )
     try:
-        table.add(_write(source, picture, decompositions, (*notes, *told_notes), options))
+        results, folder = _write(source, picture, decompositions, (*notes, *told_notes), options)
+        table.add(result.summary for result in results)
+        page.add(picture.srgb, results, folder)
     except InputError as error:
         raise NotWrittenError(str(error)) from error
     return sum(each.face_id is not None for each in decompositions)
 
 
-def _report_failure(table: FaceTable, name: str, error: Exception) -> None:
-    """Print why a file was not read, and add it to the table."""
+def _report_failure(table: FaceTable, page: FaceReport, name: str, error: Exception) -> None:
+    """Print why a file was not read, and add it to the table and the page."""
     report(error)
+    page.add_failure(name, describe(error))
     try:
         table.add_failure(name, describe(error))
     except InputError as fault:
@@ -116,15 +134,17 @@ def _write(
     decompositions: Sequence[Decomposition],
     notes: Sequence[str],
     options: argparse.Namespace,
-) -> list[dict[str, Any]]:
+) -> tuple[list[_Result], Path]:
     """Write the results of a photograph under names that are free or its own, and print them.
 
     Returns:
-        The summaries that were written.
+        What was written, and where.
     """
     folder = _make_folder(options.output or source.folder / OUTPUT)
     with lock_folder(folder):
-        stem = choose_result_stem(folder, source, _list_all_ends(decompositions))
+        stem = choose_result_stem(
+            folder, source, _list_all_ends(decompositions, options.colour_maps)
+        )
         if stem != source.stem:
             others = f"{folder} holds other files of the name {source.stem}"
             notes = (*notes, f"{others}; the results of {source.name} are numbered: {stem}.")
@@ -132,13 +152,14 @@ def _write(
         for each in decompositions:
             summary = {"file": source.name, "input": source.describe(folder)} | each.to_dict()
             summary["notes"] = [*notes, *summary["notes"]]
+            summary["map_files"] = _describe_map_files(options.colour_maps)
             results.append(_Result(stem + _name_part(each, len(decompositions)), each, summary))
-        count = _write_all(folder, results, picture.srgb, source.digest)
+        count = _write_all(folder, results, picture.srgb, source.digest, options.colour_maps)
     for sentence in dict.fromkeys(each for _, _, summary in results for each in summary["notes"]):
         note(sentence)
     for result in results:
         _print(source, folder, result, count, options.json)
-    return [result.summary for result in results]
+    return results, folder
 
 
 def _print(source: Source, folder: Path, result: _Result, count: int, as_json: bool) -> None:
@@ -153,13 +174,14 @@ def _print(source: Source, folder: Path, result: _Result, count: int, as_json: b
 
 
 def _describe_skin(summary: dict[str, Any]) -> str:
-    pigments = summary["pigments"]
+    pigments, optics = summary["pigments"], summary["model"].get("optics")
     if pigments["melanin"]["mean"] is None:
         return "no skin was found"
     numbers = ", ".join(
-        f"{name} {describe_mean(each['mean'], each['interval'])}" for name, each in pigments.items()
+        describe_reading(name, each["mean"], each["interval"], optics)
+        for name, each in pigments.items()
     )
-    return f"{numbers} on skin, {summary['skin_share']:.0%} of the crop"
+    return f"{numbers} on skin, {100 * summary['skin_share']:.2g} % of the crop"
 
 
 def _read(found: Found) -> tuple[Source, Picture, tuple[str, ...]]:

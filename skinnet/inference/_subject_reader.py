@@ -95,6 +95,7 @@ class SubjectReader:
         pasted = paste_layers(layers, photo, box, inside)
         alpha = None if picture.alpha is None else picture.alpha[box.slices]
         mask, who = pasted["mask"][box.slices], subject.describe(name)
+        colour = measure_chromaticity(photo[box.slices], mask)
         return Decomposition(
             **pasted,
             light=name_light(encoder_outputs, self.encoder),
@@ -108,14 +109,16 @@ class SubjectReader:
                 *self._note_provider(),
                 *note_transparency(alpha, mask, name),
                 *subject.notes,
-                *list_doubts(who, photo[box.slices], mask, encoder_outputs, name_known(known)),
+                *list_doubts(
+                    *(who, photo[box.slices], mask, encoder_outputs, name_known(known)), colour
+                ),
             ),
             output_info=self.encoder.output_info,
             model=self.encoder.describe(),
             uncertainty=Uncertainty.from_outputs(encoder_outputs, self.encoder.region_share),
             capture_known=name_known(known),
             exif=read_shot(picture.metadata.get("exif", b""))._asdict(),
-            skin_chromaticity=measure_chromaticity(photo[box.slices], mask),
+            skin_chromaticity=colour,
             face_id=subject.face_id,
             faces_found=None if subject.faces is None else len(subject.faces),
             face_parts=None if subject.face is None else find_face_parts(photo, subject.face),

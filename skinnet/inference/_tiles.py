@@ -112,16 +112,28 @@ def draw_map(
     note: str = "",
 ) -> Image.Image:
     """Draw a tile of values [h, w], blank where `mask` is 0, with a note beside the caption."""
+    colours = colour_small_map(values, mask, scale, *_fit_size(*values.shape))
+    skin = values[mask > SKIN_THRESHOLD]
+    notes = [each for each in (note, _note_excess(skin, scale)) if each]
+    return _draw_tile(caption, colours, scale, "\n".join(notes))
+
+
+def colour_small_map(
+    values: NDArray[np.floating],
+    mask: NDArray[np.floating],
+    scale: Scale,
+    width: int,
+    height: int,
+) -> NDArray[np.uint8]:
+    """Colour values [h, w] at a smaller size, blank where `mask` is 0; uint8 [height, width, 3]."""
     share = np.clip(mask, 0, 1).astype(np.float32)
-    width, height = _fit_size(*share.shape)
     weight = resize(share, width, height)
     # Values are averaged over skin alone, before they are coloured: a large map costs little.
     sums = resize(np.where(share > 0, values, 0).astype(np.float32) * share, width, height)
     mean = sums / np.maximum(weight, 1e-6)
     colours = weight[..., None] * scale.colour(mean) + (1 - weight[..., None]) * np.array(BLANK)
-    skin = values[mask > SKIN_THRESHOLD]
-    notes = [each for each in (note, _note_excess(skin, scale)) if each]
-    return _draw_tile(caption, colours.astype(np.uint8), scale, "\n".join(notes))
+    small: NDArray[np.uint8] = colours.astype(np.uint8)
+    return small
 
 
 def draw_plain_map(
@@ -142,6 +154,13 @@ def draw_offset(values: NDArray[np.float32]) -> Image.Image:
     _write(tile, _LABELS, "linear sRGB")
     _write(tile, _MEASURE, "grey is 0, full colour ±100 %")
     return tile
+
+
+def draw_scale(scale: Scale) -> NDArray[np.uint8]:
+    """Draw a scale with its labels alone, uint8 sRGB [h, w, 3]."""
+    tile = Image.new("RGB", (TILE, _CAPTION + TILE + _SCALE), _PAPER)
+    _draw_scale(tile, scale)
+    return np.array(tile.crop((0, _CAPTION + TILE, *tile.size)))
 
 
 def place_labels(scale: Scale) -> list[tuple[str, float, float]]:

@@ -1,6 +1,7 @@
 """The files of a decomposed photograph, which are written together or not at all."""
 
 import json
+import math
 import re
 from collections.abc import Callable, Sequence
 from concurrent.futures import ThreadPoolExecutor
@@ -16,7 +17,13 @@ from skinnet.files import write_text, write_together
 from skinnet.images._arguments import check_path, check_photo
 from skinnet.images._mark import Mark
 from skinnet.images._png_file import write_png
-from skinnet.inference.decomposition import MAP_FILES, Decomposition
+from skinnet.inference._colour_maps import (
+    ColourMaps,
+    describe_colour_maps,
+    list_colour_maps,
+    write_colour_map,
+)
+from skinnet.inference.decomposition import MAP_FILES, SKIN_THRESHOLD, Decomposition
 from skinnet.inference.panel import draw_panel
 
 _LEVELS = 65535
@@ -43,12 +50,16 @@ def write_results(
     decomposition: Decomposition,
     summary: dict[str, Any],
     digest: str = "",
+    *,
+    colour_maps: ColourMaps = "pigments",
 ) -> int:
     """Write the panel, all maps, the reconstruction and the summary of a photograph.
 
     Maps are 16-bit PNG files in which value = scale * pixel + offset; their tEXt chunks hold
-    `scale`, `offset` and `unit`. All pictures carry a mark, so that they are not taken for
-    photographs. Files of these names are replaced.
+    `scale`, `offset` and `unit`. Apart from the mask itself they are 0 where the mask is not above
+    0.5. Maps in colour, STEM_melanin_colour.png and so on, have the scales of the panel. All
+    pictures carry a mark, so that they are not taken for photographs. Files of these names are
+    replaced.
 
     Args:
         folder: Where to write; it is made if it does not exist.
@@ -57,6 +68,8 @@ def write_results(
         decomposition: Its decomposition.
         summary: Content of the JSON file, usually `decomposition.to_dict()`.
         digest: SHA-256 of the photograph's file for the mark, in hexadecimals; "" if not known.
+        colour_maps: Maps that are written in colour too: those of the "pigments", "all" (shading
+            and specular reflection as well), or "none".
 
     Returns:
         The number of files.
@@ -73,25 +86,29 @@ def write_results(
         >>> photo, folder = astronaut(), Path(mkdtemp())
         >>> decomposition = Decomposer()(photo, detail=False)
         >>> write_results(folder, "a", photo, decomposition, decomposition.to_dict())
-        13
+        15
     """
     check_photo(photo)
     folder = check_path("The folder of results", folder)
-    return _write_all(folder, [_Result(stem, decomposition, summary)], photo, digest)
+    return _write_all(folder, [_Result(stem, decomposition, summary)], photo, digest, colour_maps)
 
 
 def _write_all(
-    folder: Path, results: Sequence[_Result], photo: NDArray[np.uint8], digest: str
+    folder: Path,
+    results: Sequence[_Result],
+    photo: NDArray[np.uint8],
+    digest: str,
+    colour_maps: ColourMaps = "pigments",
 ) -> int:
     """Write the results of a photograph, all or none. Returns the number of files of each."""
     _make_folder(folder)
     try:
         with write_together() as temporary:
             for result in results:
-                _write_result(folder, result, photo, digest, temporary)
+                _write_result(folder, result, photo, digest, colour_maps, temporary)
     except OSError as error:
         raise _describe_fault(folder, error) from error
-    return len(_list_ends(results[0].decomposition))
+    return len(_list_ends(colour_maps))
 
 
 def _write_result(
@@ -99,6 +116,7 @@ def _write_result(
     result: _Result,
     photo: NDArray[np.uint8],
     digest: str,
+    colour_maps: ColourMaps,
     temporary: Callable[[Path], Path],
 ) -> None:
     stem, decomposition, summary = result
@@ -113,6 +131,14 @@ def _write_result(
     ] + [
         partial(_write_map, paths[name], name, decomposition, Mark("predict", "map", digest))
         for name in MAP_FILES
+    ]
+    jobs += [
+        partial(
+            write_colour_map,
+            temporary(folder / f"{stem}_{name}_colour.png"),
+            *(name, decomposition, digest),
+        )
+        for name in list_colour_maps(colour_maps)
     ]
     with ThreadPoolExecutor(_WRITERS) as pool:
         for job in [pool.submit(job) for job in jobs]:
@@ -142,35 +168,62 @@ def _name_part(decomposition: Decomposition, count: int) -> str:
     return f"_face{decomposition.face_id}" if count > 1 else ""
 
 
-def _list_all_ends(decompositions: Sequence[Decomposition]) -> list[str]:
+def _list_all_ends(
+    decompositions: Sequence[Decomposition], colour_maps: ColourMaps = "pigments"
+) -> list[str]:
     """List the ends of the names of all files of a photograph."""
     return [
         _name_part(each, len(decompositions)) + end
         for each in decompositions
-        for end in _list_ends(each)
+        for end in _list_ends(colour_maps)
     ]
 
 
-def _list_ends(decomposition: Decomposition) -> list[str]:
+def _list_ends(colour_maps: ColourMaps) -> list[str]:
     """List the ends of the names of the files that `write_results` writes."""
-    names = ("panel", "reconstruction", *MAP_FILES)
+    coloured = (f"{name}_colour" for name in list_colour_maps(colour_maps))
+    names = ("panel", "reconstruction", *MAP_FILES, *coloured)
     return [*(f"_{name}.png" for name in names), ".json"]
 
 
+def _describe_map_files(colour_maps: ColourMaps) -> dict[str, Any]:
+    """Describe what the files of maps hold, for JSON."""
+    return {
+        "outside_mask": 0.0,
+        "mask_above": SKIN_THRESHOLD,
+        "colour": describe_colour_maps(colour_maps),
+    }
+
+
 def _write_map(path: Path, name: str, decomposition: Decomposition, mark: Mark) -> None:
+    """Write a map of 16 bits, which is 0 outside of the mask; the mask itself is written whole."""
     info, values = decomposition.describe_map(name), decomposition.get_map(name)
-    low = min(info.range[0], float(values.min()))
-    high = max(info.range[1], float(values.max()))
-    scale = (high - low) / _LEVELS or 1.0
-    pixels = _quantise(values, low, scale)
+    skin = None if name == "mask" else decomposition.mask > SKIN_THRESHOLD
+    inside = values if skin is None else values[skin]
+    low = min(info.range[0], float(inside.min(initial=0)))
+    scale, low = _fit_levels(low, max(info.range[1], float(inside.max(initial=0))))
+    pixels = _quantise(values, skin, low, scale)
     text = {"scale": repr(scale), "offset": repr(low), "unit": info.unit}
+    if skin is not None:
+        text["outside_mask"] = f"0: the map is 0 where the mask is not above {SKIN_THRESHOLD:g}"
     text = {"Description": info.description, "map": name} | text | mark.to_text()
     write_png(path, pixels, text)
 
 
-def _quantise(values: NDArray[np.float32], low: float, scale: float) -> NDArray[np.uint16]:
+def _fit_levels(low: float, high: float) -> tuple[float, float]:
+    """The step of the levels, and the value of the first; one of the levels is exactly 0."""
+    if low >= 0:
+        return (high - low) / _LEVELS or 1.0, low
+    step = (high - low) / (_LEVELS - 1)
+    return step, -step * math.ceil(-low / step)
+
+
+def _quantise(
+    values: NDArray[np.float32], skin: NDArray[np.bool_] | None, low: float, scale: float
+) -> NDArray[np.uint16]:
     pixels = np.empty(values.shape, np.uint16)
     for top in range(0, values.shape[0], _STRIP):
         rows = slice(top, top + _STRIP)
-        pixels[rows] = np.rint((values[rows] - low) / scale).clip(0, _LEVELS)
+        kept = values[rows] if skin is None else np.where(skin[rows], values[rows], 0)
+        pixels[rows] = np.rint((kept - low) / scale).clip(0, _LEVELS)
     return pixels

@@ -11,6 +11,7 @@ from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
 from matplotlib.ticker import MaxNLocator
 from PIL import Image
+from scipy import ndimage
 
 from skinnet.appearance._curves import Curve
 from skinnet.appearance._model import AppearanceModel
@@ -165,9 +166,24 @@ def _draw_appearances(
     pictures = []
     for caption, beta in zip(captions, betas, strict=True):
         albedo = model.reconstruct(beta)
-        picture = renderer(albedo) if renderer else _draw_texture(albedo, model.mask)
+        picture = (
+            renderer(fill_texels(albedo, model.mask))
+            if renderer
+            else _draw_texture(albedo, model.mask)
+        )
         pictures.append(draw_picture(caption, picture))
     return pictures
+
+
+def fill_texels(
+    albedo: Float32[np.ndarray, "size size 3"], mask: Bool[np.ndarray, "size size"]
+) -> Float32[np.ndarray, "size size 3"]:
+    """Give texels that are not modelled the colour of the nearest one that is, to render them."""
+    nearest: Int[np.ndarray, "2 size size"] = ndimage.distance_transform_edt(
+        ~mask, return_distances=False, return_indices=True
+    )
+    filled: Float32[np.ndarray, "size size 3"] = albedo[tuple(nearest)]
+    return filled
 
 
 def _draw_texture(

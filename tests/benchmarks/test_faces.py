@@ -48,7 +48,7 @@ def write_template(path: Path, landmarks: np.ndarray) -> None:
     ):
         points[list(same)] = landmarks[list(on_mesh)] - 0.5
     lines = [f"{x}\t{y}" for x, y in points.tolist()]
-    path.write_text("\n".join(["189", *lines, "1", "0", "2", "0 0"]))
+    path.write_text("\n".join(["189", *lines, "1", "0", "2", "0 0"]), encoding="utf-8")
 
 
 @pytest.mark.slow

@@ -14,7 +14,7 @@ ROW = ["7", "CA", *["0.3"] * 31, "", "0"]
 
 
 def write(path: Path, *rows: list[str]) -> Path:
-    path.write_text("\n".join(",".join(row) for row in rows) + "\n")
+    path.write_text("\n".join(",".join(row) for row in rows) + "\n", encoding="utf-8")
     return path
 
 

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 from PIL import Image
 
-from examples import lightstage, london, scans, synthetic, tones
+from examples import figures, lightstage, london, scans, strip, synthetic, tones
 from examples._command import check_picture, write_picture
 from skinnet.errors import InputError
 
@@ -22,6 +22,9 @@ Main = Callable[[Sequence[str]], int]
         (tones.main, ["--texels", "0"], "texels is a number from 4"),
         (tones.main, ["-o", "x.txt"], "x.txt does not end in .png"),
         (tones.main, ["-o", "."], "does not end in .png"),
+        (strip.main, ["--size", "5"], "size is a number from 96"),
+        (figures.main, ["4"], "Figures 2, 3, 6, 7 and 8 are recomputed; got 4"),
+        (figures.main, ["--dpi", "1"], "dpi is a number from 20"),
         (synthetic.main, ["-o", "x.jpg"], "x.jpg does not end in .png"),
         (synthetic.main, ["--beside", "absent"], "absent is not a folder"),
         (lightstage.main, ["--people", "0"], "people is a number from 3"),
@@ -42,6 +45,12 @@ def test_a_bad_argument_ends_in_a_sentence(
     assert main(arguments) == 2
     assert words in capsys.readouterr().err
     assert not list(tmp_path.iterdir())
+
+
+def test_every_example_has_tests() -> None:
+    examples = Path(__file__).parents[2] / "examples"
+    for script in examples.glob("[a-z]*.py"):
+        assert (Path(__file__).parent / f"test_{script.name}").is_file(), script.name
 
 
 def test_a_picture_replaces_only_one_of_the_same_example(tmp_path: Path) -> None:

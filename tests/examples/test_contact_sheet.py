@@ -1,11 +1,15 @@
 """The contact sheet takes people of all tones, once each."""
 
+from pathlib import Path
+
 import numpy as np
 import pytest
 from PIL import Image
+from skimage.data import astronaut
 
 from examples import contact_sheet
 from examples.contact_sheet import Person, choose_people, cut_out, measure_tone
+from skinnet.images import resize
 
 
 def test_people_are_spread_over_the_tones() -> None:
@@ -24,6 +28,16 @@ def test_pale_skin_has_the_larger_angle() -> None:
 def test_what_is_no_skin_is_green() -> None:
     photo, mask = np.full((2, 2, 3), 200, np.uint8), np.array([[1, 0], [0, 0]], np.float32)
     assert cut_out(photo, mask)[0].tolist() == [[200, 200, 200], list(contact_sheet.BEHIND)]
+
+
+@pytest.mark.slow
+def test_a_page_is_drawn(tmp_path: Path) -> None:
+    (tmp_path / "portraits").mkdir()
+    Image.fromarray(resize(astronaut(), 300, 300)).save(tmp_path / "portraits" / "a.png")
+    words = [str(tmp_path / "portraits"), "-o", str(tmp_path / "sheet.png")]
+    assert contact_sheet.main(words) == 0
+    with Image.open(tmp_path / "sheet_1.png") as sheet:
+        assert sheet.size[0] > 9 * 318
 
 
 def test_a_folder_without_faces_is_refused(

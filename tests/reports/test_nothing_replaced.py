@@ -34,7 +34,7 @@ def test_two_runs_into_one_folder_keep_both_and_find_their_own_again(
         code, printed, err = run("predict", other, "-o", out)
         assert code == 0 and "a-2.json" in printed and "numbered: a-2" in err
     assert read_melanin(out) == {"a.json": 0.2, "a-2.json": 0.1}
-    assert len(names(out)) == 26
+    assert len(names(out)) == 30
     record = json.loads((out / "a-2.json").read_text())
     assert record["file"] == str(other)
     assert record["input"]["path"] == "../2/a.png"
@@ -104,7 +104,7 @@ def test_standard_input_is_known_by_its_content(
     files = save(tmp_path / "a.png"), save(tmp_path / "b.png", DARK)
     for path in (*files, *files):
         data = path.read_bytes()
-        monkeypatch.setattr(sys, "stdin", io.TextIOWrapper(io.BytesIO(data)))
+        monkeypatch.setattr(sys, "stdin", io.TextIOWrapper(io.BytesIO(data), encoding="utf-8"))
         assert run("predict", "-", "-o", tmp_path / "out")[0] == 0
     assert read_melanin(tmp_path / "out") == {"stdin.json": 0.2, "stdin-2.json": 0.1}
 
@@ -130,7 +130,7 @@ def test_files_of_the_user_stay(run: Run, tmp_path: Path, name: str, kind: str) 
     after = snapshot(out)
     assert {key: after[key] for key in before} == before
     assert (out / name).is_symlink() == link
-    assert len(after) == 13 + len(before)
+    assert len(after) == 15 + len(before)
     assert json.loads(after["a-2.json"])["maps"]["melanin"]["mean"] == pytest.approx(0.2)
 
 

@@ -18,6 +18,7 @@ Run = Callable[..., tuple[int, str, str]]
 
 PARTS = (
     *("hemoglobin", "mask", "melanin", "offset_b", "offset_g", "offset_r", "panel"),
+    *("hemoglobin_colour", "melanin_colour"),
     *("reconstruction", "shading", "specular", "hemoglobin_sd", "melanin_sd"),
 )
 FILES = sorted(["a.png", "a.json", *(f"a_{part}.png" for part in PARTS)])
@@ -33,8 +34,8 @@ def test_a_folder_that_is_written_into_is_read_as_before(
         assert code == 0
         assert names(tmp_path) == FILES
         assert read_melanin(tmp_path) == {"a.json": 0.2}
-    assert "1 photograph, 1 face read, 0 not read, 13 passed over" in err
-    assert "13 results of skinnet" in err
+    assert "1 photograph, 1 face read, 0 not read, 15 passed over" in err
+    assert "15 results of skinnet" in err
 
 
 def test_results_beside_photographs_are_no_photographs_of_a_subfolder(
@@ -47,7 +48,7 @@ def test_results_beside_photographs_are_no_photographs_of_a_subfolder(
     assert run("predict", tmp_path / "g", "-r")[0] == 0
     assert sorted(path.name for path in tmp_path.rglob("*.json")) == ["a.json"]
     code, _, err = run("predict", tmp_path / "g" / "skinmaps")
-    assert code == 2 and "holds no photographs" in err and "13 results of skinnet" in err
+    assert code == 2 and "holds no photographs" in err and "15 results of skinnet" in err
 
 
 @pytest.mark.parametrize("spelling", ["*", "*.png", "a_*.png", "**/*", "[a-z]*"])
@@ -74,7 +75,7 @@ def test_a_star_names_the_folder_of_results_too(
         inputs = names(tmp_path) if expanded else ["*"]
         code, _, err = run("predict", *inputs)
         assert code == 0, err
-    assert "1 photograph, 1 face read, 0 not read, 13 passed over" in err
+    assert "1 photograph, 1 face read, 0 not read, 15 passed over" in err
     assert read_melanin(tmp_path / "skinmaps") == {"a.json": 0.2}
 
 
@@ -93,7 +94,7 @@ def test_a_result_that_is_piped_in_is_refused(
 ) -> None:
     run("predict", save(tmp_path / "a.png"), "-o", tmp_path)
     data = (tmp_path / "a_mask.png").read_bytes()
-    monkeypatch.setattr(sys, "stdin", io.TextIOWrapper(io.BytesIO(data)))
+    monkeypatch.setattr(sys, "stdin", io.TextIOWrapper(io.BytesIO(data), encoding="utf-8"))
     code, _, err = run("predict", "-", "-o", tmp_path)
     assert code == 2 and "standard input is a result of skinnet (map)" in err
 

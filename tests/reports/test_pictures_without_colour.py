@@ -95,7 +95,9 @@ def test_standard_input_without_colour(
     monkeypatch: pytest.MonkeyPatch, tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
     path = save(TONES["cyanotype"](make_colour()), tmp_path / "old.png")
-    monkeypatch.setattr("sys.stdin", io.TextIOWrapper(io.BytesIO(path.read_bytes())))
+    monkeypatch.setattr(
+        "sys.stdin", io.TextIOWrapper(io.BytesIO(path.read_bytes()), encoding="utf-8")
+    )
     assert main(["predict", "-", "-o", str(tmp_path / "out")]) == 2
     assert (
         "There is no colour in standard input: it has one tone of blue" in capsys.readouterr().err

@@ -22,10 +22,10 @@ def test_every_face_has_files_and_a_line(run: Run, tmp_path: Path) -> None:
     code, out, err = run("predict", photo, "--faces", "all", "-o", tmp_path / "out")
     assert code == 0 and err == ""
     assert list(read_melanin(tmp_path / "out")) == [f"{face}.json" for face in FACES]
-    assert len(names(tmp_path / "out")) == 13 * PEOPLE
+    assert len(names(tmp_path / "out")) == 15 * PEOPLE
     lines = out.splitlines()
     assert [line.startswith(f"{photo}, face {k + 1}: ") for k, line in enumerate(lines)]
-    assert "13 files" in lines[2] and f"{FACES[2]}_*.png" in lines[2]
+    assert "15 files" in lines[2] and f"{FACES[2]}_*.png" in lines[2]
 
 
 def test_json_has_a_line_a_face(run: Run, tmp_path: Path) -> None:
@@ -57,7 +57,7 @@ def test_a_second_run_replaces_its_own_results(run: Run, tmp_path: Path) -> None
     for faces in ("all", "all", "largest", "2", "all"):
         assert run("predict", tmp_path, "--faces", faces, "-o", tmp_path)[0] == 0
     assert list(read_melanin(tmp_path)) == ["a.json", *(f"{face}.json" for face in FACES)]
-    assert len(names(tmp_path)) == 1 + 13 * (1 + PEOPLE)
+    assert len(names(tmp_path)) == 1 + 15 * (1 + PEOPLE)
     for path in tmp_path.glob("a_face*.png"):
         mark = read_mark(path)
         assert mark is not None and mark.verb == "predict"
@@ -104,7 +104,7 @@ def test_results_of_faces_are_no_photographs(run: Run, tmp_path: Path) -> None:
     for _ in range(2):
         code, _, err = run("predict", tmp_path, "--faces", "all", "-o", tmp_path)
         assert code == 0
-    assert f"1 photograph, {PEOPLE} faces read, 0 not read, {13 * PEOPLE} passed over" in err
+    assert f"1 photograph, {PEOPLE} faces read, 0 not read, {15 * PEOPLE} passed over" in err
     code, _, err = run("predict", tmp_path / f"{FACES[0]}_mask.png", "-o", tmp_path)
     assert code == 2 and "is a result of skinnet" in err
 

@@ -19,7 +19,7 @@ LINES = ((404.7, 1.5), (435.8, 1.5), (546.1, 1.5), (578.0, 2.0), (610.3, 0.6))
 
 def tabulate(path: Path, wavelength: np.ndarray, *columns: np.ndarray) -> Path:
     rows = np.column_stack([wavelength, *columns])
-    path.write_text("\n".join(",".join(f"{x:.9g}" for x in row) for row in rows))
+    path.write_text("\n".join(",".join(f"{x:.9g}" for x in row) for row in rows), encoding="utf-8")
     return path
 
 
@@ -320,7 +320,7 @@ def test_what_cannot_be_read_is_named(tmp_path: Path, name: str) -> None:
 def test_a_path_is_no_name(tmp_path: Path, monkeypatch: pytest.MonkeyPatch, ending: str) -> None:
     monkeypatch.chdir(tmp_path)
     path = Path(f"A{ending}")
-    path.write_text(FILES["plain.csv"])
+    path.write_text(FILES["plain.csv"], encoding="utf-8")
     np.testing.assert_allclose(load_light(path).numpy(), RIGHT, rtol=1e-3)
     np.testing.assert_allclose(load_light(f"./{path}").numpy(), RIGHT, rtol=1e-3)
     by_name = load_light(str(path)).numpy()

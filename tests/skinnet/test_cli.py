@@ -12,10 +12,11 @@ from PIL import Image
 
 from skinnet import __version__, cli
 from skinnet.cli import main
+from skinnet.inference._colour_scales import MELANIN
 
 MAPS = [
     *("hemoglobin", "mask", "melanin", "offset_b", "offset_g", "offset_r", "shading", "specular"),
-    *("hemoglobin_sd", "melanin_sd"),
+    *("hemoglobin_sd", "melanin_sd", "hemoglobin_colour", "melanin_colour"),
 ]
 FILES = sorted([*(f"a_{name}.png" for name in (*MAPS, "panel", "reconstruction")), "a.json"])
 
@@ -24,8 +25,10 @@ Predict = Callable[..., int]
 
 @pytest.fixture
 def photo(tmp_path: Path, astronaut: np.ndarray) -> Path:
+    """The astronaut in warm light: the tiny model takes the wall for skin."""
     path = tmp_path / "a.png"
-    Image.fromarray(astronaut[:256, 96:352]).save(path)
+    warm = astronaut[:256, 96:352] * np.array([1, 0.95, 0.85])
+    Image.fromarray(warm.astype(np.uint8)).save(path)
     return path
 
 
@@ -57,9 +60,7 @@ def test_predict_writes_beside_the_photograph(
     assert predict(photo) == 0
     assert names(photo.parent / "skinmaps") == FILES
     out, err = capsys.readouterr()
-    assert (
-        out.startswith(f"{photo}: melanin 0.0") and "13 files" in out and len(out.split("\n")) == 2
-    )
+    assert out.startswith(f"{photo}: melanin ") and "15 files" in out and len(out.split("\n")) == 2
     assert err == ""
 
 
@@ -72,6 +73,57 @@ def test_maps_say_what_their_pixels_mean(predict: Predict, photo: Path, tmp_path
     skin = pixels(tmp_path / "out" / "a_mask.png") > 0.501 * 65535
     assert note["unit"] == "melanosome volume fraction"
     assert values[skin].mean() == pytest.approx(summary["maps"]["melanin"]["mean"], rel=1e-3)
+
+
+def test_maps_are_exactly_0_outside_of_the_mask_and_say_so(
+    predict: Predict, photo: Path, tmp_path: Path
+) -> None:
+    assert predict(photo, "-o", tmp_path / "out") == 0
+    summary = json.loads((tmp_path / "out" / "a.json").read_text())
+    assert summary["map_files"]["outside_mask"] == 0
+    assert summary["map_files"]["mask_above"] == 0.5
+    skin = pixels(tmp_path / "out" / "a_mask.png") > 0.501 * 65535
+    assert 0.2 < skin.mean() < 0.9
+    for name in MAPS[:-2]:
+        with Image.open(tmp_path / "out" / f"a_{name}.png") as image:
+            note = image.text
+            values = float(note["scale"]) * np.array(image) + float(note["offset"])
+        assert (name == "mask") == ("outside_mask" not in note)
+        assert name == "mask" or (values[~skin] == 0).mean() > 0.999
+
+
+def test_maps_in_colour_are_on_the_panels_scale(
+    predict: Predict, photo: Path, tmp_path: Path
+) -> None:
+    assert predict(photo, "-o", tmp_path / "out") == 0
+    summary = json.loads((tmp_path / "out" / "a.json").read_text())
+    scale = summary["map_files"]["colour"]["melanin"]
+    assert (scale["ticks"][-1], scale["unit"], scale["linear_to"]) == (50, "%", 1)
+    with Image.open(tmp_path / "out" / "a_melanin_colour.png") as image:
+        assert image.text["skinnet"].split()[3] == "colour"
+        assert image.text["colour_scale"].startswith(
+            "melanosomes in the epidermis, by volume: 0 to"
+        )
+        colours = np.array(image.convert("RGB"))
+    with Image.open(tmp_path / "out" / "a_melanin.png") as image:
+        values = float(image.text["scale"]) * np.array(image) + float(image.text["offset"])
+    skin = pixels(tmp_path / "out" / "a_mask.png") > 0.501 * 65535
+    off = np.abs(colours[skin].astype(int) - MELANIN.colour(values[skin]))
+    assert colours.shape[:2] == skin.shape and off.max() <= 2
+    grey = np.array([int(scale["outside_mask"][at : at + 2], 16) for at in (1, 3, 5)])
+    assert (colours[~skin] == grey).all(-1).mean() > 0.999
+
+
+@pytest.mark.parametrize(
+    ("which", "coloured"),
+    [("none", []), ("all", ["hemoglobin", "melanin", "shading", "specular"])],
+)
+def test_which_maps_are_in_colour_can_be_chosen(
+    predict: Predict, photo: Path, tmp_path: Path, which: str, coloured: list[str]
+) -> None:
+    assert predict(photo, "-o", tmp_path / "out", "--colour-maps", which) == 0
+    found = [name for name in names(tmp_path / "out") if "_colour" in name]
+    assert found == [f"a_{name}_colour.png" for name in coloured]
 
 
 def test_maps_are_soft_on_request(predict: Predict, photo: Path, tmp_path: Path) -> None:
@@ -101,7 +153,8 @@ def test_the_terminal_states_the_intervals_of_the_summary(
     for name, each in summary["pigments"].items():
         low, high = each["interval"]
         assert each["level"] == 0.9
-        assert f"{name} {each['mean']:.2g} (90%: {low:.2g} to {high:.2g})" in out
+        mean, low, high = (f"{100 * number:.2g}" for number in (each["mean"], low, high))
+        assert f"{name} {mean} % (90 %: {low} to {high}" in out
 
 
 def test_no_skin_is_null_and_reported(
@@ -194,7 +247,9 @@ def test_standard_input_is_a_photograph(
     predict: Predict, photo: Path, monkeypatch: pytest.MonkeyPatch, tmp_path: Path
 ) -> None:
     monkeypatch.chdir(tmp_path)
-    monkeypatch.setattr(sys, "stdin", io.TextIOWrapper(io.BytesIO(photo.read_bytes())))
+    monkeypatch.setattr(
+        sys, "stdin", io.TextIOWrapper(io.BytesIO(photo.read_bytes()), encoding="utf-8")
+    )
     assert predict("-") == 0
     assert "stdin_panel.png" in names(tmp_path / "skinmaps")
     assert (
@@ -209,7 +264,7 @@ def test_empty_standard_input_is_reported(
     monkeypatch: pytest.MonkeyPatch,
     capsys: pytest.CaptureFixture[str],
 ) -> None:
-    monkeypatch.setattr(sys, "stdin", io.TextIOWrapper(io.BytesIO(b"")))
+    monkeypatch.setattr(sys, "stdin", io.TextIOWrapper(io.BytesIO(b""), encoding="utf-8"))
     assert main([*verb, "-", "--model", str(model_file)]) == 2
     assert (
         capsys.readouterr().err
@@ -304,10 +359,13 @@ def test_edit_writes_the_format_that_is_asked_for(
             ["-o", "b.gif"],
             "b.gif has to end in .jpg, .png, .tif, .webp, ",
         ),
-        (["-o", "b"], "got ''"),
+        (
+            ["-o", "b"],
+            "b has no ending that names a format, such as .jpg or .png; if it is to be a",
+        ),
         (["-o", "a.png"], "a.png is the photograph itself; choose another file with -o"),
         (["-o", "./a.png"], "is the photograph itself"),
-        (["-o", "none/b.png"], "b.png cannot be written"),
+        (["-o", "none/b.png"], "none/b.png cannot be written, since there is no folder none; make"),
         (["--melanin", "nan"], "melanin is multiplied by a number in [0, 10]; got nan"),
         (["--hemoglobin", "-1"], "hemoglobin is multiplied by a number in [0, 10]; got -1"),
         (["--melanin", "11"], "got 11"),

@@ -31,7 +31,7 @@ class FakePip:
             return CompletedProcess(arguments, 1, "", error)
         found = [{"metadata": {"name": name, "version": "9999"}} for name in dict.fromkeys(names)]
         report = Path(arguments[arguments.index("--report") + 1])
-        report.write_text(json.dumps({"install": found}))
+        report.write_text(json.dumps({"install": found}), encoding="utf-8")
         return CompletedProcess(arguments, 0, "", "")
 
 

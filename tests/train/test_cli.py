@@ -261,7 +261,7 @@ def test_an_old_loss_is_answered_with_its_new_name(
 def test_the_old_key_of_synthetic_faces_is_answered_with_the_new_one(
     tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    text = Path("configs/portraits.yaml").read_text()
+    text = Path("configs/portraits.yaml").read_text(encoding="utf-8")
     (tmp_path / "old.yaml").write_text(text.replace("    synthetic:", "    twin:"))
     for arguments in (
         [f"--config={tmp_path / 'old.yaml'}"],
@@ -275,7 +275,7 @@ def test_the_old_key_of_synthetic_faces_is_answered_with_the_new_one(
 def test_the_old_class_of_synthetic_faces_is_answered_with_the_new_one(
     fit: Fit, tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    text = Path("configs/quick.yaml").read_text()
+    text = Path("configs/quick.yaml").read_text(encoding="utf-8")
     (tmp_path / "old.yaml").write_text(text.replace("SyntheticFaces", "TwinFaces"))
     for arguments in (
         [f"--config={tmp_path / 'old.yaml'}"],

@@ -182,7 +182,7 @@ def test_a_killed_run_goes_on_as_if_it_had_not_been(
 
 
 def rows(path: Path) -> list[dict[str, str]]:
-    with path.open() as file:
+    with path.open(encoding="utf-8") as file:
         return list(csv.DictReader(file))
 
 

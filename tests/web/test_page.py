@@ -8,6 +8,7 @@ import struct
 import zipfile
 import zlib
 from collections.abc import Callable
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -17,9 +18,16 @@ from numpy.typing import NDArray
 from page_steps import FIRST_MAPS_MS, wait_for_maps
 from PIL import Image
 from skimage.data import astronaut
+from toned_pictures import TONES, make_colour
 
+from skinnet.errors import InputError
+from skinnet.images import Box, Face, find_faces
 from skinnet.inference import Capture, Decomposer
 from skinnet.inference._capture_inputs import make_capture_inputs
+from skinnet.inference._doubts import note_clipping, note_dark_skin, note_doubts
+from skinnet.inference._face_checks import check_face
+from skinnet.inference._head_crop import crop_head
+from skinnet.inference._skin_mask import adopt_mask, find_skin
 from skinnet.inference._subject import find_subjects
 
 pytestmark = pytest.mark.slow
@@ -42,7 +50,10 @@ def read_in_python(
 ) -> Maps:
     known = {} if capture is None else make_capture_inputs(capture, decomposer.encoder)
     subject = find_subjects(photo, "photo", "all", "face")[index]
-    return {name: each[0] for name, each in decomposer._encode(photo, subject, known).items()}
+    outputs = decomposer._encode(photo, subject, known)
+    mask = find_skin(photo, subject, outputs["mask"][0])
+    adopted = adopt_mask(outputs, mask, photo[subject.crop.box.slices])
+    return {name: each[0] for name, each in adopted.items()}
 
 
 def download(page: Any, button: str) -> bytes:
@@ -62,7 +73,11 @@ def assert_same(maps: Maps, expected: Maps, share: float = 1.0) -> None:
     """Check that maps are the same, all pixels or a share of them."""
     for name, plane in maps.items():
         assert plane.shape == expected[name].shape, name
-        assert np.quantile(np.abs(plane - expected[name]), share) < 1e-3, name
+        difference = np.abs(plane - expected[name])
+        if name in ("mask", "specular"):  # outlines are filled, and edges found, at other sizes
+            assert difference.mean() < 3e-3 and np.quantile(difference, 0.99) < 0.05, name
+        else:
+            assert np.quantile(difference, share) < 1e-3, name
 
 
 def move_slider(page: Any, name: str, value: float) -> None:
@@ -279,7 +294,7 @@ def test_what_cannot_be_read_is_a_sentence(open_page: Callable[..., Any]) -> Non
         "notes.txt": (b"no picture", "notes.txt is not a picture that this browser can read"),
         "empty.jpg": (b"", "empty.jpg is empty"),
         "huge.png": (make_huge_png(), "huge.png has 60000 \N{MULTIPLICATION SIGN} 60000 pixels"),
-        "grey.png": (content.getvalue(), "The photograph has no colour"),
+        "grey.png": (content.getvalue(), "There is no colour in grey.png: the skin in it is grey."),
     }
     for name, (buffer, sentence) in cases.items():
         page.set_input_files("#file", {"name": name, "mimeType": "image/png", "buffer": buffer})
@@ -337,3 +352,120 @@ def test_pictures_are_resized_as_by_pillow(open_page: Callable[..., Any]) -> Non
             (new_width, new_height), Image.Resampling.BILINEAR, reducing_gap=3.0
         )
         np.testing.assert_array_equal(np.reshape(resized, (new_height, new_width, 3)), expected)
+
+
+def list_unreadable() -> dict[str, NDArray[np.uint8]]:
+    """The astronaut in colour, without colour, dark, and drawn."""
+    colour = make_colour()
+    toned = {name: tone(colour) for name, tone in TONES.items()}
+    dark = colour // 8
+    return toned | {"colour": colour, "dark": dark, "dark sepia": TONES["sepia"](dark)}
+
+
+def turn(photo: NDArray[np.uint8]) -> NDArray[np.uint8]:
+    return np.array(Image.fromarray(photo).rotate(-25, Image.Resampling.BICUBIC, expand=True))
+
+
+def check_in_python(photo: NDArray[np.uint8], face: Face) -> list[str]:
+    crop = crop_head(face, photo.shape)
+    try:
+        return list(check_face(photo, crop, face, "The face in a.png", "a.png"))
+    except InputError as error:
+        return [
+            str(error).replace(
+                "; --region skin (in Python region='skin') reads it all the same", ""
+            )
+        ]
+
+
+def check_in_page(page: Any, photo: NDArray[np.uint8], face: Face) -> list[str]:
+    height, width = photo.shape[:2]
+    said: list[str] = page.evaluate(
+        """async ([content, width, height, face]) => {
+            const { checkFace } = await import("/src/face_checks.js");
+            const { cropHead } = await import("/src/head_crop.js");
+            const data = Uint8Array.from(atob(content), (letter) => letter.charCodeAt(0));
+            const photo = { data, width, height, channels: 3 };
+            try {
+                return checkFace(photo, cropHead(face, photo), face, "the face in a.png", "a.png");
+            } catch (error) {
+                return [error.message];
+            }
+        }""",
+        [
+            base64.b64encode(photo.tobytes()).decode(),
+            *(width, height),
+            {"box": face.box._asdict(), "tilt": face.tilt},
+        ],
+    )
+    return said
+
+
+@pytest.mark.parametrize("is_turned", [False, True])
+def test_what_has_no_colour_is_refused_in_the_words_of_python(
+    open_page: Callable[..., Any], is_turned: bool
+) -> None:
+    page = open_page("licences.txt")  # without the networks
+    (face,) = find_faces(turn(make_colour()) if is_turned else make_colour())
+    said = {}
+    for name, photo in list_unreadable().items():
+        shown = turn(photo) if is_turned else photo
+        said[name] = check_in_page(page, shown, face)
+        assert said[name] == check_in_python(shown, face), name
+    assert said["colour"] == []
+    assert sum("no colour in a.png" in "".join(each) for each in said.values()) > 20
+
+
+def test_a_face_that_is_cut_off_or_small_is_told_as_in_python(
+    open_page: Callable[..., Any],
+) -> None:
+    page = open_page("licences.txt")
+    (face,) = find_faces(astronaut())
+    for part, scale in ((slice(190, 512), 1), (slice(235, 512), 1), (slice(0, 512), 5)):
+        photo = np.ascontiguousarray(astronaut()[::scale, part][:, ::scale])
+        ends = np.array(face.box) - [part.start, 0, part.start, 0]
+        moved = replace(face, box=Box(*(ends // scale).tolist()))
+        assert check_in_page(page, photo, moved) == check_in_python(photo, moved) != []
+
+
+def test_doubts_are_those_of_python(open_page: Callable[..., Any]) -> None:
+    page = open_page("licences.txt")
+    rng = np.random.default_rng(0)
+    for melanin, face_sd, balance, is_known in (
+        (0.05, (0.2, 0.3), (0.1, -0.3), False),
+        (0.05, (0.7, 0.3), (0.1, -0.4), False),
+        (0.2, (1.2, 1.0), (0.1, 0.1), True),
+        (0.2, (0.427, 0.6), (0.5, 0.1), True),
+    ):
+        mask = rng.uniform(0.3, 1, (8, 9)).astype(np.float32)
+        plane = np.full_like(mask, melanin)
+        said = page.evaluate(
+            """async ([melanin, mask, faceSd, whiteBalance, isWhiteKnown]) => {
+                const { listDoubts } = await import("/src/uncertainty.js");
+                const upright = { melanin, mask };
+                const who = "the face in a.jpg";
+                const clipped = 0.305;
+                return listDoubts({ who, upright, clipped, faceSd, whiteBalance, isWhiteKnown });
+            }""",
+            [plane.ravel().tolist(), mask.ravel().tolist(), face_sd, balance, is_known],
+        )
+        photo = np.where(np.arange(1000) < 305, 255, 100).astype(np.uint8)
+        who = "the face in a.jpg"
+        expected = [
+            *note_clipping(who, photo[None, :, None], np.ones((1, 1000), np.float32)),
+            *note_dark_skin(who, plane, mask),
+            *note_doubts(who, face_sd, balance, is_known),
+        ]
+        if len(said) > 1 and not is_known:
+            assert "Pick white" in said.pop() and "--white" in expected.pop()
+        assert said == expected
+
+
+def test_other_faces_and_doubts_are_shown(open_page: Callable[..., Any]) -> None:
+    head = astronaut()[:260, 90:360]
+    page = open_page()
+    open_photo(page, np.hstack([head // 3, head[:, ::-1] // 4]))
+    wait_for_maps(page)
+    page.locator("#notes").filter(has_text="1 more face was found in photo.png").wait_for(
+        timeout=FIRST_MAPS_MS
+    )

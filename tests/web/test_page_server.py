@@ -5,6 +5,7 @@ import signal
 import socket
 import subprocess
 import sys
+import threading
 import urllib.request
 from collections.abc import Iterator
 from functools import partial
@@ -132,3 +133,56 @@ def test_the_command_serves_the_page_until_it_is_interrupted(server: PageServer)
         finally:
             process.kill()
     assert process.returncode == 0 and "Traceback" not in said
+
+
+@pytest.fixture
+def open_server() -> Iterator[PageServer]:
+    """A server for the network, as a container needs it."""
+    with PageServer(0, "0.0.0.0") as server:
+        thread = threading.Thread(target=server.serve_forever, kwargs={"poll_interval": 0.05})
+        thread.start()
+        yield server
+        server.shutdown()
+        thread.join()
+
+
+@pytest.mark.parametrize(
+    ("host", "status"),
+    [
+        ("127.0.0.1:8765", 200),
+        ("localhost:9000", 200),
+        ("192.168.1.7:8765", 200),
+        ("[::1]:8765", 200),
+        ("rebound.example:8765", 403),
+        ("127.0.0.1.rebound.example", 403),
+        ("127.0.0.1:port", 403),
+        ("[", 403),
+        ("", 403),
+    ],
+)
+def test_names_of_others_are_refused_on_a_network_too(
+    open_server: PageServer, host: str, status: int
+) -> None:
+    caller = http.client.HTTPConnection(HOST, open_server.server_port)
+    caller.request("GET", "/style.css", headers={"Host": host})
+    assert caller.getresponse().status == status
+    caller.close()
+    assert open_server.address == f"http://{HOST}:{open_server.server_port}/"
+
+
+def test_a_server_for_the_network_says_so(
+    monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    monkeypatch.setattr(PageServer, "serve_forever", lambda server: None)
+    assert main(["web", "--port=0", "--host=0.0.0.0", "--no-open"]) == 0
+    assert "warning: --host 0.0.0.0 opens the page to everyone" in capsys.readouterr().err
+    assert main(["web", "--port=0", "--no-open"]) == 0
+    assert "open to this computer alone" in capsys.readouterr().err
+
+
+@pytest.mark.parametrize("host", ["203.0.113.7", "absent.invalid", "a" * 80, ""])
+def test_a_host_that_is_not_here_is_a_sentence(
+    host: str, capsys: pytest.CaptureFixture[str]
+) -> None:
+    assert main(["web", "--port=0", f"--host={host}", "--no-open"]) == 2
+    assert "is no address of this computer" in capsys.readouterr().err

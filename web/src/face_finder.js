@@ -3,6 +3,8 @@
 import { detectFaces } from "./face_detector.js";
 import { findLandmarks } from "./face_mesh.js";
 import { placeFace, toBox } from "./face_place.js";
+import { reduce, resize } from "./resizing.js";
+import { roundHalfEven } from "./rounding.js";
 import { measureOverlap } from "./turned_square.js";
 
 const LEAST_DETECTION = 0.4; // least probability of a face, and in parts of a photograph
@@ -23,21 +25,37 @@ const SAME_FACE = 0.3; // overlap of two finds of one face
 const LARGE_PHOTO = 512; // longer side from which on parts are searched for small faces
 const FAR = 1.6; // side of a view from afar, for faces that fill the photograph
 
+const COARSE = 75; // longer side, in pixels, to which small photographs without a face are averaged
+
 /** Parts in a row, their sides, and the side of the smallest face below which they are searched. */
 const PARTS = [[2, 0.6, 0.25], [3, 0.36, 0.1]];
 
 /**
- * Find faces [{box, tilt}], tilt in degrees, from left to right. A quick search leaves out the parts
+ * Find faces [{box, tilt, landmarks}], tilt in degrees, from left to right. A quick search leaves out the parts
  * of the photograph, in which only smaller faces are found.
  */
 export async function findFaces(networks, photo, isQuick = false) {
   const found = [];
+  await searchWhole(networks, photo, found);
+  if (!isQuick) await searchParts(networks, photo, found);
+  const isSmall = Math.max(photo.width, photo.height) < LARGE_PHOTO;
+  if (!isQuick && !found.length && isSmall) await searchWhole(networks, smooth(photo), found);
+  return found
+    .map(({ square, landmarks }) => ({
+      box: toBox(square), tilt: (square.tilt * 180) / Math.PI, landmarks,
+    }))
+    .sort((a, b) => a.box.left + a.box.right - b.box.left - b.box.right);
+}
+
+async function searchWhole(networks, photo, found) {
   await search(networks, photo, frame(photo, 1), LEAST_DETECTION, found);
   if (!found.length) await search(networks, photo, frame(photo, FAR), LEAST_DETECTION, found);
-  if (!isQuick) await searchParts(networks, photo, found);
-  return found
-    .map(({ square }) => ({ box: toBox(square), tilt: (square.tilt * 180) / Math.PI }))
-    .sort((a, b) => a.box.left + a.box.right - b.box.left - b.box.right);
+}
+
+/** Average over small squares; strong noise hides faces from the networks. */
+function smooth(photo) {
+  const part = Math.max(2, roundHalfEven(Math.max(photo.width, photo.height) / COARSE));
+  return resize(reduce(photo, part, part), photo.width, photo.height);
 }
 
 function frame({ width, height }, margin) {
@@ -47,8 +65,8 @@ function frame({ width, height }, margin) {
 async function search(networks, photo, view, leastScore, found) {
   for (const detection of await detectFaces(networks, photo, view, leastScore)) {
     if (isKnown(detection.square, found)) continue;
-    const square = await confirmFace(networks, photo, detection);
-    if (square && !isKnown(square, found)) found.push({ square });
+    const face = await confirmFace(networks, photo, detection);
+    if (face && !isKnown(face.square, found)) found.push(face);
   }
 }
 
@@ -78,7 +96,7 @@ function listParts({ width, height }, count, side) {
   return place(height).flatMap((y) => place(width).map((x) => ({ x, y, side, tilt: 0 })));
 }
 
-/** The square of a detected face; null if the two networks together see none. */
+/** The square of a detected face, and its landmarks; null if the two networks together see none. */
 async function confirmFace(networks, photo, detection) {
   const { landmarks, odds, score } = await chooseTurn(networks, photo, detection);
   const place = placeFace(landmarks);
@@ -91,7 +109,7 @@ async function confirmFace(networks, photo, detection) {
     const moved = moves.reduce((sum, move) => sum + move, 0) / moves.length / place.side;
     evidence += (again.odds - odds) / 2 - MOVE * moved;
   }
-  return evidence < LEAST_EVIDENCE ? null : place;
+  return evidence < LEAST_EVIDENCE ? null : { square: place, landmarks };
 }
 
 /** Landmarks and odds in the orientation in which the face is clearest. */

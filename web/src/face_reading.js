@@ -3,35 +3,57 @@
 import { writeNpy, writeZip } from "./archive.js";
 import { SCALES, colourPlane } from "./colour_scales.js";
 import { Editor, UNCHANGED, isUnchanged } from "./editing.js";
+import { checkFace } from "./face_checks.js";
+import { segmentFaceSkin } from "./face_skin.js";
 import { GuidedPlane } from "./guided_filter.js";
 import { cropHead, cutHead, fadeEdges, turnBack } from "./head_crop.js";
+import { adoptMask } from "./mask_adoption.js";
 import { keepOwnSkin } from "./own_skin.js";
+import { MASK } from "./python_data.js";
 import { cropRaster } from "./raster.js";
 import { ResizedPlane, resize } from "./resizing.js";
-import { averageSkin, findInterval, isSkin, listDoubts } from "./uncertainty.js";
+import {
+  averageSkin, doubtWhite, findInterval, isSkin, listDoubts, measureClipping,
+} from "./uncertainty.js";
 import { measureWhite } from "./white_reference.js";
 
 const HEAD_VIEW = 512; // longest side, in pixels, of the head as the page shows and edits it
-const EDGE_RADIUS = 1; // of the guided filter of the mask, in pixels of the network
-const EDGE_VARIANCE = 3e-4;
+const EDGE_RADIUS = 1; // of the guided filter of a mask without landmarks, in its pixels
 const MAP_SIZE = 640; // longer side, in pixels, of maps that are downloaded in colour
 const LEVEL = 0.9; // of the intervals
 
 export class FaceReading {
-  /** Read a face; `others` are the photograph's other faces, `white` a place or null. */
-  static async read(networks, photo, face, others, white) {
+  /**
+   * Read a face, described as `who` in the photograph of a `name`; `others` are the photograph's
+   * other faces, `white` is a place or null. Throws a sentence if it cannot be read.
+   */
+  static async read(networks, photo, { face, who, name, others, isMarked }, white) {
     const known = white ? { white_balance: measureWhite(photo, white.x, white.y) } : {};
     const crop = cropHead(face, photo);
+    const checked = checkFace(photo, crop, face, who, name, isMarked);
     const cut = cutHead(crop, photo, networks.workingSize);
     const { planes: upright, capture, faceSd } = await networks.encode(cut, known);
     const { planes, width, height } = turnBack(
       crop, upright, cut.width, cut.height, networks.workingSize,
     );
-    keepOwnSkin(planes.mask, width, height, crop.box, face, others);
+    const part = cropRaster(photo, crop.box);
+    const skin = findSkin(part, face, others, crop.box, { plane: planes.mask, width, height });
+    const head = shrinkHead(part);
+    const mask = guideMask(head, skin).readRows(head, 0, head.height);
+    const adopted = { plane: mask, width: head.width, height: head.height };
+    Object.assign(planes, adoptMask(planes, width, height, adopted, part));
     const fade = fadeEdges(crop, width, height, photo);
-    const notes = listDoubts(cut, upright.mask, faceSd, [...capture.white_balance], white !== null);
+    const doubts = listDoubts({
+      who, upright, faceSd,
+      clipped: measureClipping(photo, crop.box, planes.mask, width, height),
+      whiteBalance: [...capture.white_balance],
+      isWhiteKnown: white !== null,
+    });
+    const blind = white && (await networks.encode(cut)).capture.white_balance;
+    const whiteDoubts = white ? doubtWhite(who, known.white_balance, blind) : [];
+    const notes = [...checked, ...whiteDoubts, ...doubts];
     return new FaceReading({
-      networks, face, crop, planes, width, height, capture, faceSd, fade, notes, photo,
+      networks, face, crop, planes, width, height, capture, faceSd, fade, notes, photo, skin, head,
     });
   }
 
@@ -39,7 +61,6 @@ export class FaceReading {
     Object.assign(this, parts);
     this.factors = UNCHANGED;
     this.editor = new Editor(this.networks, this);
-    this.head = this.makeHeadView(this.photo);
     this.headMask = this.makeMask(this.head);
     this.known = new Map();
   }
@@ -104,16 +125,7 @@ export class FaceReading {
 
   /** The mask of a picture of the rectangle that is read. */
   makeMask(part) {
-    const { planes, width, height } = this;
-    return new GuidedPlane(part, planes.mask, width, height, EDGE_RADIUS, EDGE_VARIANCE);
-  }
-
-  makeHeadView(photo) {
-    const part = cropRaster(photo, this.crop.box);
-    const scale = HEAD_VIEW / Math.max(part.width, part.height);
-    if (scale >= 1) return part;
-    const [width, height] = [part.width, part.height].map((side) => Math.round(side * scale));
-    return resize(part, Math.max(1, width), Math.max(1, height));
+    return guideMask(part, this.skin);
   }
 
   /** Means over the skin with their intervals of 90 %; null without skin. */
@@ -158,4 +170,28 @@ export class FaceReading {
     const blob = await canvas.convertToBlob({ type: "image/png" });
     return new Uint8Array(await blob.arrayBuffer());
   }
+}
+
+/** The skin of a face in its rectangle; without landmarks, or without any, that of the network. */
+function findSkin(part, face, others, box, coarse) {
+  const isSeen = face.landmarks && coarse.plane.some(isSkin);
+  const landmarks = isSeen && face.landmarks.map(([x, y]) => [x - box.left, y - box.top]);
+  const skin = isSeen
+    ? segmentFaceSkin(part, landmarks, coarse)
+    : { ...coarse, plane: coarse.plane.slice(), radius: EDGE_RADIUS };
+  keepOwnSkin(skin.plane, skin.width, skin.height, box, face, others);
+  return skin;
+}
+
+/** The mask of a picture of the rectangle, whose edges it follows. */
+function guideMask(part, { plane, width, height, radius }) {
+  return new GuidedPlane(part, plane, width, height, radius, MASK.EDGE_VARIANCE);
+}
+
+/** The head as the page shows and edits it. */
+function shrinkHead(part) {
+  const scale = HEAD_VIEW / Math.max(part.width, part.height);
+  if (scale >= 1) return part;
+  const [width, height] = [part.width, part.height].map((side) => Math.round(side * scale));
+  return resize(part, Math.max(1, width), Math.max(1, height));
 }

@@ -2,13 +2,16 @@
 
 /** Gaussian filter that mirrors the plane at its sides, as scipy.ndimage does. */
 export function filterGaussian(plane, width, height, sigma) {
+  return filterBoth(plane, width, height, makeGaussian(sigma), mirrorAll);
+}
+
+export function makeGaussian(sigma) {
   const radius = Math.floor(4 * sigma + 0.5);
   const weights = Array.from({ length: 2 * radius + 1 }, (_, at) =>
     Math.exp(-0.5 * ((at - radius) / sigma) ** 2),
   );
   const total = weights.reduce((sum, weight) => sum + weight, 0);
-  const kernel = weights.map((weight) => weight / total);
-  return filterBoth(plane, width, height, kernel, mirrorAll);
+  return weights.map((weight) => weight / total);
 }
 
 /** Mean over squares of 2 radius + 1 pixels; the plane is mirrored about its last pixels. */
@@ -23,7 +26,7 @@ function filterBoth(plane, width, height, kernel, mirror) {
 }
 
 /** Filter `lines` lines of `length` values that lie `step` apart. */
-function filterLines(plane, length, lines, step, stride, kernel, mirror) {
+export function filterLines(plane, length, lines, step, stride, kernel, mirror) {
   const radius = (kernel.length - 1) / 2;
   const filtered = new Float32Array(plane.length);
   const padded = new Float64Array(length + 2 * radius);
@@ -40,7 +43,7 @@ function filterLines(plane, length, lines, step, stride, kernel, mirror) {
   return filtered;
 }
 
-function mirrorAll(at, length) {
+export function mirrorAll(at, length) {
   const place = ((at % (2 * length)) + 2 * length) % (2 * length);
   return place < length ? place : 2 * length - 1 - place;
 }

@@ -37,6 +37,17 @@ export class GuidedPlane {
   }
 }
 
+/** A plane filtered by a photograph of the same size, not limited to [0, 1]. */
+export function filterGuided(photo, plane, radius, epsilon) {
+  const [red, green, blue, sum] = fitGuide(photo, plane, radius, epsilon);
+  const { data, channels } = photo;
+  return sum.map((value, at) =>
+    value +
+    red[at] * GUIDE[data[at * channels]] +
+    green[at] * GUIDE[data[at * channels + 1]] +
+    blue[at] * GUIDE[data[at * channels + 2]]);
+}
+
 /** Slopes of red, green and blue, and the intercept, of linear functions of the guide's colours. */
 function fitGuide(photo, plane, radius, epsilon) {
   const { width, height, channels, data } = photo;

@@ -66,8 +66,9 @@ function isInside(face, { width, height }) {
   return Math.min(face.left, face.top, width - face.right, height - face.bottom) >= least;
 }
 
-function frameHead(face, { width, height }) {
-  const half = (MARGIN * Math.max(face.right - face.left, face.bottom - face.top)) / 2;
+/** A square around the head of a face's box, clipped to the photograph. */
+export function frameHead(face, { width, height }, margin = MARGIN) {
+  const half = (margin * Math.max(face.right - face.left, face.bottom - face.top)) / 2;
   const x = (face.left + face.right) / 2;
   const y = face.top + HEAD_CENTRE * (face.bottom - face.top);
   return {
@@ -76,6 +77,14 @@ function frameHead(face, { width, height }) {
     right: Math.min(width, roundHalfEven(x + half)),
     bottom: Math.min(height, roundHalfEven(y + half)),
   };
+}
+
+/** The face's box in the cut of a turned head of `size` pixels. */
+export function placeFaceInCut(size) {
+  const side = size / MARGIN;
+  const [left, top] = [(size - side) / 2, size / 2 - HEAD_CENTRE * side];
+  const box = { left, top, right: left + side, bottom: top + side };
+  return Object.fromEntries(Object.entries(box).map(([name, end]) => [name, roundHalfEven(end)]));
 }
 
 function turnSquare({ box, tilt }) {

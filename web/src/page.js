@@ -137,6 +137,7 @@ class Page {
     this.faces = faces;
     this.listFaces(faces, chosen);
     const isLeft = this.read === this.readByItself;
+    if (isRead) this.showNotes();
     if (!faces.length || (isRead && isSame) || (isRead && !isLeft)) return;
     this.zoom(true);
     await this.readFace(largest);
@@ -211,8 +212,13 @@ class Page {
     this.picture.setReading(reading);
     if (!this.histories.has(reading.key)) this.histories.set(reading.key, []);
     this.panel.setHistory(this.histories.get(reading.key));
+    this.showNotes();
+  }
+
+  showNotes() {
+    const notes = [...this.reading.notes, ...noteOthers(this.faces.length, this.photo.name)];
     find("notes").replaceChildren(
-      ...reading.notes.map((note) => {
+      ...notes.map((note) => {
         const item = document.createElement("li");
         item.textContent = note;
         return item;
@@ -318,6 +324,13 @@ class Page {
 /** The number of a face among others; -1 if it is none of them. */
 function findSame(faces, { box }) {
   return faces.findIndex((face) => box && face.box.left === box.left && face.box.top === box.top);
+}
+
+/** Say that there are other faces, and how they are read. */
+function noteOthers(count, name) {
+  if (count < 2) return [];
+  const [faces, it] = count === 2 ? ["face was", "it"] : ["faces were", "another"];
+  return [`${count - 1} more ${faces} found in ${name}; choose ${it} at “Face”.`];
 }
 
 function save(blob, name) {

@@ -1,13 +1,12 @@
 /** One photograph: its faces, and what was read of each. */
 
+import { refuseGrey } from "./colour_content.js";
 import { findFaces } from "./face_finder.js";
 import { FaceReading } from "./face_reading.js";
 import { resize } from "./resizing.js";
 import { roundHalfEven } from "./rounding.js";
 
 const VIEW = 1024; // longest side, in pixels, of the photograph as the page shows it
-const LEAST_FACE = 24; // width of a face, in pixels
-const GREY = 6; // most difference of the channels in a photograph without colour
 
 export class PhotoSession {
   constructor(networks, photo, name) {
@@ -29,16 +28,15 @@ export class PhotoSession {
   /** Find faces; `isQuick` for those that the whole photograph shows at a glance. */
   async findFaces(isQuick) {
     this.faces = await findFaces(this.networks, this.photo, isQuick);
+    if (!isQuick && !this.faces.length) refuseGrey(this.photo, this.name);
     const sides = this.faces.map(({ box }) => box.right - box.left);
     return { faces: this.faces, largest: sides.indexOf(Math.max(...sides)) };
   }
 
   /** Read a face {box, tilt}; `white` is a place of something white, or null. */
   async read(face, white = null) {
-    this.refuseFace(face);
     const key = makeKey(face);
-    const others = this.faces.filter((other) => makeKey(other) !== key);
-    const reading = await FaceReading.read(this.networks, this.photo, face, others, white);
+    const reading = await FaceReading.read(this.networks, this.photo, this.describe(face), white);
     reading.setFactors(this.readings.get(key)?.factors ?? reading.factors);
     this.readings.set(key, reading);
     this.reading = reading;
@@ -64,17 +62,14 @@ export class PhotoSession {
     return this.reading.writeMaps(this.name);
   }
 
-  refuseFace({ box }) {
-    const width = box.right - box.left;
-    if (width < LEAST_FACE) {
-      throw new Error(
-        `The face is ${width} pixels wide, and ${LEAST_FACE} are needed; give the picture at its ` +
-          "full size.",
-      );
-    }
-    if (isGrey(this.view)) {
-      throw new Error("The photograph has no colour, which pigments are read from; give another.");
-    }
+  /** A face among the photograph's others, and what it is called in notes. */
+  describe(face) {
+    const { name, faces } = this;
+    const keys = faces.map(makeKey);
+    const number = keys.indexOf(makeKey(face)) + 1;
+    const others = faces.filter((_, at) => at + 1 !== number);
+    const who = number && others.length ? `face ${number} in ${name}` : `the face in ${name}`;
+    return { face, who, name, others, isMarked: !number };
   }
 }
 
@@ -87,12 +82,4 @@ export function makeFace({ left, top, right, bottom }) {
 
 function makeKey({ box }) {
   return [box.left, box.top, box.right, box.bottom].join(",");
-}
-
-function isGrey({ data, channels }) {
-  for (let at = 0; at < data.length; at += channels) {
-    const [red, green, blue] = [data[at], data[at + 1], data[at + 2]];
-    if (Math.max(red, green, blue) - Math.min(red, green, blue) > GREY) return false;
-  }
-  return true;
 }

@@ -1,11 +1,16 @@
 /** How sure values are: errors of their natural logarithms are Gaussian. */
 
+import { BALANCES, DOUBTS, SENTENCES } from "./python_data.js";
+import { fill, toPercent } from "./sentences.js";
+
 const QUANTILE = 1.6448536269514722; // of the normal distribution, for intervals of 90 %
 
-const MELANIN_SPAN = 3; // ratios of an interval's ends above which a pigment cannot be told
-const HEMOGLOBIN_SPAN = 5;
-const COLOURED = 0.35; // error of log R/G or log B/G above which the light is strongly coloured
-const CLIPPED_SHARE = 0.1; // of the skin that may be overexposed without a note
+const MOST_PIXELS = 1 << 20; // of larger boxes, every second pixel is looked at, and so on
+
+const PICK_WHITE =
+  "If something white or grey is in the photograph, lit as the face is, click on it with the tool " +
+  "“Pick white”: its colour tells the light.";
+
 const SKIN = 0.5; // pixels with a larger mask are counted as skin
 
 export function isSkin(mask) {
@@ -30,55 +35,64 @@ export function averageSkin(plane, mask) {
   return count ? sum / count : null;
 }
 
-/** Sentences on why what was read should not be trusted. */
-export function listDoubts(cut, mask, faceSd, whiteBalance, isWhiteKnown) {
+/**
+ * Sentences on why what was read should not be trusted, those of Python apart from the remedy.
+ * @param who what was read, such as "the face in a.jpg"
+ * @param upright planes of the cut, as the network gives them
+ * @param clipped share of the skin that is saturated
+ */
+export function listDoubts({ who, upright, clipped, faceSd, whiteBalance, isWhiteKnown }) {
+  const doubts = [];
+  const melanin = averageSkin(upright.melanin, upright.mask);
+  if (melanin === null) return doubts;
+  if (clipped > DOUBTS.CLIPPED_SHARE) {
+    doubts.push(fill(SENTENCES.clipped, { who, share: toPercent(clipped) }));
+  }
+  if (melanin >= DOUBTS.DARK_SKIN) doubts.push(fill(SENTENCES.darkSkin, { who }));
+  return [...doubts, ...listUnknown({ who, faceSd, whiteBalance, isWhiteKnown })];
+}
+
+/** Whether a white balance that was told is far from what is seen without it. */
+export function doubtWhite(who, told, blind) {
+  const isApart = told.some((one, at) => Math.abs(one - blind[at]) > BALANCES.MOST_BLIND);
+  const format = (balance) => Array.from(balance, (one) => one.toFixed(2)).join(", ");
+  if (!isApart) return [];
+  return [fill(SENTENCES.whiteDoubt, { who, told: format(told), blind: format(blind) })];
+}
+
+/** What cannot be told, and what would help. */
+function listUnknown({ who, faceSd, whiteBalance, isWhiteKnown }) {
   const [melanin, hemoglobin] = faceSd.map((sd) => Math.exp(QUANTILE * sd));
   const doubts = [];
-  if (melanin ** 2 > MELANIN_SPAN) {
-    doubts.push(
-      `Melanin cannot be told well from this photograph: it may be ${melanin.toPrecision(2)} ` +
-        "times higher or lower than what is read.",
-    );
+  if (melanin ** 2 > DOUBTS.MELANIN_SPAN) {
+    const factor = Number(melanin.toPrecision(2));
+    doubts.push(fill(SENTENCES.melaninDoubt, { who, melanin: factor }));
   }
-  if (hemoglobin ** 2 > HEMOGLOBIN_SPAN) {
-    doubts.push(
-      "Hemoglobin cannot be told from this photograph: what is read is near that of people at " +
-        "large.",
-    );
+  if (hemoglobin ** 2 > DOUBTS.HEMOGLOBIN_SPAN) {
+    doubts.push(fill(SENTENCES.hemoglobinDoubt, { who }));
   }
-  if (!isWhiteKnown && Math.max(...whiteBalance.map(Math.abs)) > COLOURED) {
-    doubts.push(
-      "The light is strongly coloured, or the camera's white balance is wrong; the pigments are " +
-        "only as right as the guess of it.",
-    );
+  if (!isWhiteKnown && Math.max(...whiteBalance.map(Math.abs)) > DOUBTS.COLOURED) {
+    doubts.push(fill(SENTENCES.lightDoubt, { who }));
   }
-  if (doubts.length) {
-    doubts.push(
-      isWhiteKnown
-        ? "Give a photograph in daylight, without coloured light, filters or retouching."
-        : "If something white or grey is in the photograph, lit as the face is, click on it with " +
-          "the tool “Pick white”.",
-    );
-  }
-  const clipped = measureClipping(cut, mask);
-  if (clipped > CLIPPED_SHARE) {
-    doubts.unshift(
-      `${Math.round(100 * clipped)} % of the skin is overexposed: its colour is lost, and its ` +
-        "pigments are read too low. Give a photograph with a shorter exposure.",
-    );
-  }
+  if (doubts.length) doubts.push(isWhiteKnown ? SENTENCES.daylight : PICK_WHITE);
   return doubts;
 }
 
-/** Share of skin in which a channel is saturated. */
-function measureClipping(photo, mask) {
+/** Share of skin in which a channel is saturated, in a box of the photograph. */
+export function measureClipping(photo, box, mask, width, height) {
+  const [across, down] = [box.right - box.left, box.bottom - box.top];
+  const step = Math.max(1, Math.floor(Math.sqrt((across * down) / MOST_PIXELS)));
   let clipped = 0;
   let count = 0;
-  mask.forEach((value, at) => {
-    if (!isSkin(value)) return;
-    count += 1;
-    const start = at * photo.channels;
-    if ([0, 1, 2].some((channel) => photo.data[start + channel] === 255)) clipped += 1;
-  });
+  for (let y = 0; y < down; y += step) {
+    const line = Math.floor(((y + 0.5) * height) / down) * width;
+    for (let x = 0; x < across; x += step) {
+      if (!isSkin(mask[line + Math.floor(((x + 0.5) * width) / across)])) continue;
+      count += 1;
+      const at = ((box.top + y) * photo.width + box.left + x) * photo.channels;
+      const { data } = photo;
+      if (data[at] === 255 || data[at + 1] === 255 || data[at + 2] === 255) clipped += 1;
+    }
+  }
   return count ? clipped / count : 0;
 }

@@ -34,6 +34,22 @@ def add_predict(verb: argparse.ArgumentParser) -> None:
         action="store_false",
         help="do not add the photograph's detail to the network's maps; faster",
     )
+    verb.add_argument(
+        "--report",
+        nargs="?",
+        type=Path,
+        const=Path(),
+        metavar="FILE.html",
+        help="write a page with a row for each face, which needs no other file; by default "
+        "report.html beside the maps",
+    )
+    verb.add_argument(
+        "--colour-maps",
+        choices=("pigments", "all", "none"),
+        default="pigments",
+        help="which maps are written in colour too, as NAME_melanin_colour.png: those of the "
+        "pigments by default; all adds shading and specular reflection",
+    )
     add_common(verb)
 
 
@@ -123,6 +139,13 @@ def add_web(verb: argparse.ArgumentParser) -> None:
     """Add the flags of `skinnet web`."""
     verb.add_argument(
         "--port", type=int, default=8765, metavar="N", help="8765 by default; 0 for any free one"
+    )
+    verb.add_argument(
+        "--host",
+        default="127.0.0.1",
+        metavar="ADDRESS",
+        help="127.0.0.1 by default, for this computer alone; 0.0.0.0 opens the page to the "
+        "network, which a container needs",
     )
     verb.add_argument(
         "--no-open", dest="open", action="store_false", help="do not open the browser"

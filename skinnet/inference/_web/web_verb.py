@@ -11,14 +11,24 @@ def web(options: argparse.Namespace) -> None:
     """Serve the page until Ctrl-C.
 
     Raises:
-        InputError: The port cannot be used, or the page is not installed.
+        InputError: The port or the host cannot be used, or the page is not installed.
     """
-    with PageServer(options.port) as server:
+    with PageServer(options.port, options.host) as server:
         print_line(server.address)
-        note("the page is open to this computer alone, until Ctrl-C.")
+        note(_describe_reach(server))
         if options.open:
             webbrowser.open(server.address)
         try:
             server.serve_forever()
         except KeyboardInterrupt:
             return
+
+
+def _describe_reach(server: PageServer) -> str:
+    if server.is_local:
+        return "the page is open to this computer alone, until Ctrl-C."
+    return (
+        f"warning: --host {server.host} opens the page to everyone who can reach port "
+        f"{server.server_port} of this computer, without a password and unencrypted, until Ctrl-C. "
+        "Photographs still stay in the browser of whoever opens it."
+    )

@@ -47,6 +47,13 @@ def test_what_is_transparent_is_black(tmp_path: Path) -> None:
     np.testing.assert_array_equal(read[2], np.rint(RAMP[2] * (128 / 255)))
 
 
+def test_colours_that_are_transparent_do_not_count(tmp_path: Path) -> None:
+    pixels = np.full((3, 4, 4), 255, np.uint8)
+    pixels[0] = 255, 0, 0, 0
+    Image.fromarray(pixels).save(tmp_path / "a.png")
+    assert read_edit_mask(tmp_path / "a.png")[:, 0].tolist() == [0, 255, 255]
+
+
 def test_a_mask_is_turned_upright(tmp_path: Path) -> None:
     exif = Image.Exif()
     exif[0x0112] = 6

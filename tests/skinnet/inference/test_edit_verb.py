@@ -21,8 +21,8 @@ DARK = (100, 70, 60)
 
 def pipe(monkeypatch: pytest.MonkeyPatch, data: bytes) -> Callable[[], bytes]:
     """Standard input of some bytes; the function gives those of standard output."""
-    out = io.TextIOWrapper(io.BytesIO())
-    monkeypatch.setattr(sys, "stdin", io.TextIOWrapper(io.BytesIO(data)))
+    out = io.TextIOWrapper(io.BytesIO(), encoding="utf-8")
+    monkeypatch.setattr(sys, "stdin", io.TextIOWrapper(io.BytesIO(data), encoding="utf-8"))
     monkeypatch.setattr(sys, "stdout", out)
     return lambda: out.buffer.getvalue()
 
@@ -141,6 +141,28 @@ def test_a_pipe_takes_one_photograph(
     assert read() == b"" and names(tmp_path) == ["a.png", "b.png"]
 
 
+def test_a_pipe_that_cannot_be_written_is_said(
+    refused: Callable[..., str], run: Run, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    class Full(io.RawIOBase):
+        def writable(self) -> bool:
+            return True
+
+        def write(self, data: object) -> int:
+            raise OSError(28, "No space left on device")
+
+    photo = save(tmp_path / "a.png")
+    full = io.TextIOWrapper(io.BufferedWriter(Full()), encoding="utf-8")
+    monkeypatch.setattr(sys, "stdout", full)
+    said = refused("edit", photo, "-o", "-", "--melanin", 2)
+    assert said == (
+        "skinnet: Standard output cannot be written (No space left on device); give a file with "
+        "-o.\n"
+    )
+    with pytest.raises(OSError, match="No space"):
+        full.close()
+
+
 def test_formats_are_asked_for_by_name(run: Run, tmp_path: Path) -> None:
     save(tmp_path / "a.JPEG")
     save(tmp_path / "b.png", DARK)
@@ -196,7 +218,10 @@ def test_a_mask_in_the_folder_is_no_photograph(run: Run, tmp_path: Path) -> None
     Image.new("L", (32, 16), 255).save(tmp_path / "mask.png")
     code, _, err = run("edit", tmp_path, "--mask", tmp_path / "mask.png")
     assert code == 0 and "1 mask of the edit (mask.png)" in err
-    assert names(tmp_path) == ["a.png", "a_edited.png", "mask.png"]
+    save(tmp_path / "b.png", DARK)
+    code, _, err = run("edit", tmp_path, "--mask", tmp_path / "mask.png")
+    assert code == 0 and f"{tmp_path / 'mask.png'} is the mask of all 2 photographs." in err
+    assert names(tmp_path) == ["a.png", "a_edited.png", "b.png", "b_edited.png", "mask.png"]
 
 
 @pytest.mark.parametrize(

@@ -42,7 +42,8 @@ def test_others_are_refused_with_their_value(faces: object) -> None:
         check_choice(faces)
 
 
-def test_faces_that_are_not_read_are_counted() -> None:
-    assert note_others(2, 2, "a.jpg") == ()
+def test_faces_are_counted() -> None:
+    assert note_others(1, 1, "a.jpg") == ()
+    assert note_others(2, 2, "a.jpg") == ("a.jpg shows 2 faces, numbered from left to right.",)
     assert note_others(2, 1, "a.jpg")[0].startswith("1 more face was found in a.jpg; --faces all")
     assert note_others(4, 2, "a.jpg")[0].startswith("2 more faces were found in a.jpg; --faces all")

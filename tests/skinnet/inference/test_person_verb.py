@@ -28,7 +28,7 @@ def shots(tmp_path: Path) -> list[Path]:
 
 
 def load(path: Path) -> dict:
-    return json.loads(path.read_text())
+    return json.loads(path.read_text(encoding="utf-8"))
 
 
 def test_shots_are_fused_into_a_panel_and_a_summary(run: Run, shots: list[Path]) -> None:
@@ -36,7 +36,7 @@ def test_shots_are_fused_into_a_panel_and_a_summary(run: Run, shots: list[Path])
     folder = shots[0].parent / "skinmaps"
     assert code == 0 and names(folder) == ["a_person.json", "a_person.png"]
     melanin, hemoglobin = (
-        f"{name} {one['mean']:.2g} (90%: {low:.2g} to {high:.2g})"
+        f"{name} {100 * one['mean']:.2g} % (90 %: {100 * low:.2g} to {100 * high:.2g} %)"
         for name, one in load(folder / "a_person.json")["pigments"].items()
         for low, high in [one["interval"]]
     )

@@ -54,7 +54,8 @@ def test_faces_that_cannot_be_read_are_left_out_of_a_group(astronaut: np.ndarray
     scene[200:232, 220:252] = resize(np.ascontiguousarray(astronaut[40:200, 144:304]), 32, 32)
     (subject,) = find_subjects(scene, "a.jpg", "all", "face")
     assert subject.face_id == 1
-    (note,) = subject.notes
+    several, note = subject.notes
+    assert several == "a.jpg shows 2 faces, numbered from left to right."
     assert note.startswith("1 of 2 faces was left out. Face 2 in a.jpg is ")
     assert "pixels wide, and 24 are needed" in note
 

@@ -13,7 +13,7 @@ from skinnet.appearance.measures import Measures
 from skinnet.appearance.stack import SubjectStack
 from skinnet.errors import InputError
 from skinnet.inference._tiles import TILE
-from skinnet.pipeline._model_figures import draw_hybrid, draw_linear, plot_measures
+from skinnet.pipeline._model_figures import draw_hybrid, draw_linear, fill_texels, plot_measures
 
 
 def measures(name: str, shape: bool) -> Measures:
@@ -49,9 +49,20 @@ def test_the_appearance_can_be_rendered(stack: SubjectStack) -> None:
 
     model = HybridModel.fit(stack)
     draw_hybrid(model, components=1, renderer=renderer)
-    assert np.array_equal(seen[0], model.reconstruct(np.zeros(6))) and len(seen) == 3
+    mask = model.mask
+    assert np.array_equal(seen[0][mask], model.reconstruct(np.zeros(6))[mask]) and len(seen) == 3
     beta = np.eye(6)[0] * -3 * np.sqrt(model.statistics.variances)
-    assert np.allclose(seen[1], model.reconstruct(beta))
+    assert np.allclose(seen[1][mask], model.reconstruct(beta)[mask])
+
+
+def test_texels_that_are_not_modelled_are_not_black() -> None:
+    mask = np.zeros((4, 4), bool)
+    mask[0, 0] = mask[3, 3] = True
+    albedo = np.zeros((4, 4, 3), np.float32)
+    albedo[0, 0], albedo[3, 3] = 0.2, 0.6
+    filled = fill_texels(albedo, mask)
+    assert (filled[0, 1] == albedo[0, 0]).all() and (filled[3, 2] == albedo[3, 3]).all()
+    assert filled.min() > 0.1
 
 
 @pytest.mark.parametrize("components", [0, 7])

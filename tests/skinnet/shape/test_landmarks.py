@@ -37,7 +37,7 @@ def group(points: list, labels: dict[str, list[int]]) -> dict:
 
 
 def write_file(path: Path, content: object) -> Path:
-    path.write_text(content if isinstance(content, str) else json.dumps(content))
+    path.write_text(content if isinstance(content, str) else json.dumps(content), encoding="utf-8")
     return path
 
 

@@ -79,7 +79,7 @@ def write_quads(path: Path, vertices: np.ndarray, mesh: Mesh) -> None:
     lines += ["usemtl M_Face"] + ["f " + " ".join(f"{i}/{i}" for i in quad) for quad in quads]
     outside = len(mesh.uv) + 1
     lines += ["usemtl M_BackHead", f"f 1/{outside} 2/{outside} 3/{outside}"]
-    path.write_text("\n".join(lines) + "\n")
+    path.write_text("\n".join(lines) + "\n", encoding="utf-8")
 
 
 def ict_folder(folder: Path, model: ShapeModel) -> Path:

@@ -94,7 +94,7 @@ def test_sclera_lies_inside_the_eyes_of_templates(shared_data: Path) -> None:
 
 def draw_template_eyes(path: Path, shape: tuple[int, ...]) -> np.ndarray:
     """The eyes of a template of the Face Research Lab London Set."""
-    lines = path.read_text().splitlines()[1:190]
+    lines = path.read_text(encoding="utf-8").splitlines()[1:190]
     points = [tuple(float(number) for number in line.split()[:2]) for line in lines]
     image = Image.new("1", (shape[1], shape[0]))
     draw = ImageDraw.Draw(image)

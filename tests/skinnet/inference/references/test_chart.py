@@ -17,7 +17,7 @@ def write(path: Path, chart: Chart, columns: dict[str, np.ndarray]) -> Path:
         for number, (column, row) in enumerate(chart.cells)
     ]
     lines = [",".join(map(str, line)) for line in (head, *rows)]
-    path.write_text("# my chart\n" + "\n".join(lines) + "\n")
+    path.write_text("# my chart\n" + "\n".join(lines) + "\n", encoding="utf-8")
     return path
 
 
