@@ -86,12 +86,20 @@ def list_definitions(tree: ast.Module) -> list[Definition]:
 
 
 def add_methods(found: list[Definition]) -> Iterator[Definition]:
-    """Definitions, and the public methods of those that are classes."""
+    """Definitions, and the public methods of those that are classes; overloads are no methods."""
     for one in found:
         yield one
         if isinstance(one, ast.ClassDef):
             methods = (inner for inner in one.body if isinstance(inner, Function))
-            yield from (inner for inner in methods if not inner.name.startswith("_"))
+            named = (inner for inner in methods if not inner.name.startswith("_"))
+            yield from (inner for inner in named if not is_overload(inner))
+
+
+def is_overload(function: Function) -> bool:
+    """Whether a function only states types; the one that follows has the docstring."""
+    return any(
+        isinstance(one, ast.Name) and one.id == "overload" for one in function.decorator_list
+    )
 
 
 def list_functions(tree: ast.Module) -> list[Function]:

@@ -79,7 +79,7 @@ def read_picture(
             "image states its own, or is sRGB."
         )
     if isinstance(source, Picture):
-        return source if name is None else replace(source, name=name)
+        return source if name in (None, source.name) else replace(source, name=name or source.name)
     if isinstance(source, Image.Image):
         with warnings.catch_warnings():
             warnings.simplefilter("ignore")

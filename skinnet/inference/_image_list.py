@@ -65,6 +65,12 @@ def locate_errors(image: object, name: str, place: str) -> Iterator[None]:
         raise type(error)(f"{place}: {error}") from error
 
 
+def drop_frames(error: InputError) -> InputError:
+    """Return an error without the frames in which it was raised, which hold its image."""
+    error.__cause__ = error.__context__ = None
+    return error.with_traceback(None)
+
+
 def name_image(image: object, name: str | None = None) -> str | None:
     """The name of an image in messages: that which is given, or its own; None if it has none."""
     if name is not None:

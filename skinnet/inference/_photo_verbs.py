@@ -151,7 +151,7 @@ def _write(
             notes = (*notes, f"{others}; the results of {source.name} are numbered: {stem}.")
         results = []
         for each in decompositions:
-            summary = {"file": source.name, "input": source.describe(folder)} | each.summary()
+            summary = {"file": source.name, "input": source.describe(folder)} | each.to_dict()
             summary["notes"] = [*notes, *summary["notes"]]
             summary["map_files"] = _describe_map_files(options.colour_maps)
             results.append(_Result(stem + _name_part(each, len(decompositions)), each, summary))

@@ -8,7 +8,14 @@ from skinnet.errors import InputError
 from skinnet.images.photograph import read_picture
 from skinnet.inference._capture_inputs import CaptureLike, join_captures
 from skinnet.inference._face_choice import FaceChoice
-from skinnet.inference._image_list import ImageLike, is_many, locate_errors, name_all, name_image
+from skinnet.inference._image_list import (
+    ImageLike,
+    drop_frames,
+    is_many,
+    locate_errors,
+    name_all,
+    name_image,
+)
 from skinnet.inference._photo_editor import PhotoEditor
 from skinnet.inference._references.profile_use import apply_profile
 from skinnet.inference._subject import Region, find_subjects
@@ -281,6 +288,6 @@ class Decomposer(PhotoEditor):
             except InputError as error:
                 if not returns_errors:
                     raise
-                yield error
+                yield drop_frames(error)
             else:
                 yield read

@@ -66,7 +66,7 @@ def write_results(
         stem: How the files' names begin: STEM_panel.png, STEM_melanin.png, ..., STEM.json.
         photo: The photograph, uint8 sRGB [H, W, 3].
         decomposition: Its decomposition.
-        summary: Content of the JSON file, usually `decomposition.summary()`.
+        summary: Content of the JSON file, usually `decomposition.to_dict()`.
         digest: SHA-256 of the photograph's file for the mark, in hexadecimals; "" if not known.
         colour_maps: Maps that are written in colour too: those of the "pigments", "all" (shading
             and specular reflection as well), or "none".
@@ -85,7 +85,7 @@ def write_results(
         >>> from skinnet.inference import write_results
         >>> photo, folder = astronaut(), Path(mkdtemp())
         >>> decomposition = Decomposer()(photo, detail=False)
-        >>> write_results(folder, "a", photo, decomposition, decomposition.summary())
+        >>> write_results(folder, "a", photo, decomposition, decomposition.to_dict())
         15
     """
     check_photo(photo)

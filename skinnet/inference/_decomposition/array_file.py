@@ -18,6 +18,9 @@ from skinnet.files import READ_ERRORS, write_atomically
 
 _HEADER = "header"
 _LARGEST_HEADER = 4_000_000
+_ALWAYS, _RATIO, _MEMBERS = 100_000_000, 50, 100
+"""Bytes that any file may hold, bytes for each of its own, and the largest number of arrays."""
+
 _TYPES = frozenset("float32 float64 uint8 uint16 bool int64".split())
 _DAMAGES = (zipfile.BadZipFile, zlib.error, TokenError, NotImplementedError, *READ_ERRORS)
 
@@ -107,7 +110,12 @@ def open_arrays(path: Path) -> zipfile.ZipFile:
     if path.is_dir():
         raise InputError(f"{path} is a folder; give a file that Decomposition.save wrote.")
     try:
-        return zipfile.ZipFile(path)
+        archive = zipfile.ZipFile(path)
+        sizes = [member.file_size for member in archive.infolist()]
+        if len(sizes) > _MEMBERS or sum(sizes) > max(_ALWAYS, _RATIO * path.stat().st_size):
+            archive.close()
+            raise ValueError(f"it would unpack to {len(sizes)} files of {sum(sizes):,} bytes")
+        return archive
     except FileNotFoundError:
         raise InputError(f"There is no file {path}; check the path.") from None
     except _DAMAGES as error:

@@ -115,6 +115,8 @@ def test_a_stream_goes_on_after_errors(decomposer: Decomposer, astronaut: np.nda
     assert first.means == last.means
     assert isinstance(second, NoFaceError) and "images[1]" in str(second)
     assert isinstance(third, InputError) and "images[2] is several images" in str(third)
+    for error in (second, third):  # frames would keep the photographs in memory
+        assert error.__traceback__ is error.__cause__ is error.__context__ is None
     with pytest.raises(NoFaceError):
         list(decomposer.stream([astronaut[:40, :40]]))
 

@@ -79,6 +79,8 @@ SCRIPT = """
         "opened": (lambda v: open_model(v, "encoder"), (*odd, 3, None, b"x")),
         "kind": (lambda v: open_model(SHIPPED_ENCODER, v), (words,)),
     }
+    if "torch" in sys.modules:
+        print("torch was imported")
     for name, (call, values) in cases.items():
         for value in values:
             try:

@@ -22,7 +22,7 @@ def test_the_smile_of_the_astronaut_shows_teeth(astronaut: np.ndarray, face: Fac
     )
     assert teeth.inside.sum() >= 20
     assert (white > lips).all()
-    assert parts.sclera == []  # the eyes are 20 pixels wide
+    assert parts.sclera == ()  # the eyes are 20 pixels wide
 
 
 def test_sclera_is_found_in_larger_eyes(astronaut: np.ndarray) -> None:

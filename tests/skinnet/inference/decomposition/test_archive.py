@@ -205,6 +205,19 @@ def load_or_explain(path: Path) -> tuple[Decomposition | None, str]:
         return None, str(error)
 
 
+def test_what_would_fill_the_memory_is_refused(tmp_path: Path) -> None:
+    path = tmp_path / "a.npz"
+    with zipfile.ZipFile(path, "w", zipfile.ZIP_DEFLATED) as archive:
+        archive.writestr("header.npy", bytes(150_000_000))
+    with pytest.raises(InputError, match="it would unpack to 1 files of 150,000,000 bytes"):
+        Decomposition.load(path)
+    with zipfile.ZipFile(path, "w") as archive:
+        for number in range(200):
+            archive.writestr(f"{number}.npy", b"")
+    with pytest.raises(InputError, match="it would unpack to 200 files"):
+        Decomposition.load(path)
+
+
 @given(data=st.data())
 def test_damage_gives_the_same_or_a_sentence(
     content: bytes, decomposition: Decomposition, tmp_path_factory: Any, data: st.DataObject
