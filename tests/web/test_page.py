@@ -24,7 +24,7 @@ from skinnet.errors import InputError
 from skinnet.images import Box, Face, find_faces
 from skinnet.inference import Capture, Decomposer
 from skinnet.inference._capture_inputs import make_capture_inputs
-from skinnet.inference._doubts import note_clipping, note_dark_skin, note_doubts
+from skinnet.inference._doubts import list_doubts
 from skinnet.inference._face_checks import check_face
 from skinnet.inference._head_crop import crop_head
 from skinnet.inference._skin_mask import adopt_mask, find_skin
@@ -447,37 +447,58 @@ def test_a_face_that_is_cut_off_or_small_is_told_as_in_python(
         assert check_in_page(page, photo, moved) == check_in_python(photo, moved) != []
 
 
-def test_doubts_are_those_of_python(open_page: Callable[..., Any]) -> None:
+@pytest.mark.parametrize("share", [0.0, 0.003, 0.07, 0.3])
+@pytest.mark.parametrize(
+    ("melanin", "face_sd", "balance", "is_known", "colour"),
+    [
+        (0.05, (0.2, 0.3), (0.1, -0.3), False, (0.7, -0.3)),
+        (0.05, (0.7, 0.3), (0.1, -0.4), False, (0.7, -0.3)),
+        (0.05, (0.2, 0.3), (0.1, -0.4), False, (0.1, 0.6)),
+        (0.2, (1.2, 1.0), (0.1, 0.1), True, (1.6, -1.2)),
+        (0.2, (0.427, 0.6), (0.5, 0.1), False, (1.6, -1.2)),
+    ],
+)
+def test_doubts_are_those_of_python(
+    open_page: Callable[..., Any],
+    melanin: float,
+    face_sd: tuple[float, float],
+    balance: tuple[float, float],
+    is_known: bool,
+    colour: tuple[float, float],
+    share: float,
+) -> None:
+    photo = np.where(np.arange(1000) < 1000 * share * 0.305, 255, 100).astype(np.uint8)
+    photo = np.repeat(photo[None, :, None], 3, -1)
+    mask = (np.arange(1000)[None] < 1000 * share).astype(np.float32)
+    plane = np.full((8, 9), melanin, np.float32)
+    outputs = {
+        "face_sd": np.array([face_sd], np.float32),
+        "white_balance": np.array([balance], np.float32),
+        "melanin": plane[None],
+        "mask": np.ones((1, 8, 9), np.float32),
+    }
+    who, known = "the face in a.jpg", ("white_balance",) * is_known
+    expected = list(list_doubts(who, photo, mask, outputs, known, colour))
     page = open_page("licences.txt")
-    rng = np.random.default_rng(0)
-    for melanin, face_sd, balance, is_known in (
-        (0.05, (0.2, 0.3), (0.1, -0.3), False),
-        (0.05, (0.7, 0.3), (0.1, -0.4), False),
-        (0.2, (1.2, 1.0), (0.1, 0.1), True),
-        (0.2, (0.427, 0.6), (0.5, 0.1), True),
-    ):
-        mask = rng.uniform(0.3, 1, (8, 9)).astype(np.float32)
-        plane = np.full_like(mask, melanin)
-        said = page.evaluate(
-            """async ([melanin, mask, faceSd, whiteBalance, isWhiteKnown]) => {
-                const { listDoubts } = await import("/src/uncertainty.js");
-                const upright = { melanin, mask };
-                const who = "the face in a.jpg";
-                const clipped = 0.305;
-                return listDoubts({ who, upright, clipped, faceSd, whiteBalance, isWhiteKnown });
-            }""",
-            [plane.ravel().tolist(), mask.ravel().tolist(), face_sd, balance, is_known],
-        )
-        photo = np.where(np.arange(1000) < 305, 255, 100).astype(np.uint8)
-        who = "the face in a.jpg"
-        expected = [
-            *note_clipping(who, photo[None, :, None], np.ones((1, 1000), np.float32)),
-            *note_dark_skin(who, plane, mask),
-            *note_doubts(who, face_sd, balance, is_known),
-        ]
-        if len(said) > 1 and not is_known:
-            assert "Pick white" in said.pop() and "--white" in expected.pop()
-        assert said == expected
+    said = page.evaluate(
+        """async (values) => {
+            const { listDoubts } = await import("/src/uncertainty.js");
+            return listDoubts(values);
+        }""",
+        {
+            "who": who,
+            "upright": {"melanin": plane.ravel().tolist(), "mask": [1] * plane.size},
+            "skinShare": float(np.mean(mask > 0.5)),
+            "clipped": float((photo[mask > 0.5] == 255).any(-1).mean()) if share else 0,
+            "chromaticity": colour,
+            "faceSd": face_sd,
+            "whiteBalance": balance,
+            "isWhiteKnown": is_known,
+        },
+    )
+    if expected and "--white" in expected[-1]:
+        assert "Pick white" in said.pop() and expected.pop()
+    assert said == expected
 
 
 def test_other_faces_and_doubts_are_shown(open_page: Callable[..., Any]) -> None:
