@@ -31,6 +31,9 @@ _SENTENCES = {
     "melaninDoubt": (doubts, "Melanin cannot be told"),
     "hemoglobinDoubt": (doubts, "Hemoglobin cannot be told"),
     "lightDoubt": (doubts, "is strongly coloured"),
+    "tinted": (doubts, "looks tinted"),
+    "noSkin": (doubts, "No skin was found of"),
+    "littleSkin": (doubts, "Nearly no skin of"),
     "daylight": (doubts, "Give a photograph in daylight"),
     "whiteDoubt": (profile_use, "is far from what is seen without it"),
     "darkSkin": (doubts, "Dark skin is often read as paler"),
@@ -50,7 +53,10 @@ _SENTENCES = {
 _LIMITS: dict[str, tuple[ModuleType, tuple[str, ...]]] = {
     "DOUBTS": (
         doubts,
-        ("_MELANIN_SPAN", "_HEMOGLOBIN_SPAN", "_COLOURED", "_CLIPPED_SHARE", "_DARK_SKIN"),
+        (
+            *("_MELANIN_SPAN", "_HEMOGLOBIN_SPAN", "_COLOURED", "_CLIPPED_SHARE", "_DARK_SKIN"),
+            *("_TINTED", "_CASTS", "_LITTLE_SKIN"),
+        ),
     ),
     "BALANCES": (balances, ("MOST_BLIND",)),
     "FACES": (
@@ -70,7 +76,7 @@ _LIMITS: dict[str, tuple[ModuleType, tuple[str, ...]]] = {
     "SKIN": (
         skin_colours,
         (
-            *("_SKIN", "_SKIN_PRECISION", "_MIN_COVARIANCE", "_SPECULAR_SHARES"),
+            *("USUAL_RATIOS", "_SKIN_PRECISION", "_MIN_COVARIANCE", "_SPECULAR_SHARES"),
             *("_LOWEST", "_BIN", "_BINS", "_UNSEEN"),
         ),
     ),

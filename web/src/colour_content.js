@@ -184,8 +184,8 @@ function findSkin(photo, face) {
 }
 
 /** Squared Mahalanobis distance from all skin. */
-function measureSquare(ratios) {
-  const difference = ratios.map((ratio, axis) => ratio - SKIN.SKIN[axis]);
+export function measureSquare(ratios) {
+  const difference = ratios.map((ratio, axis) => ratio - SKIN.USUAL_RATIOS[axis]);
   return dot(difference, multiply(SKIN.SKIN_PRECISION, difference));
 }
 

@@ -13,7 +13,7 @@ import { MASK } from "./python_data.js";
 import { cropRaster } from "./raster.js";
 import { ResizedPlane, resize } from "./resizing.js";
 import {
-  averageSkin, doubtWhite, findInterval, isSkin, listDoubts, measureClipping,
+  averageSkin, doubtWhite, findInterval, isSkin, listDoubts, measureSkin,
 } from "./uncertainty.js";
 import { measureWhite } from "./white_reference.js";
 
@@ -45,7 +45,8 @@ export class FaceReading {
     const fade = fadeEdges(crop, width, height, photo);
     const doubts = listDoubts({
       who, upright, faceSd,
-      clipped: measureClipping(photo, crop.box, planes.mask, width, height),
+      skinShare: mask.filter(isSkin).length / mask.length,
+      ...measureSkin(photo, crop.box, planes.mask, width, height),
       whiteBalance: [...capture.white_balance],
       isWhiteKnown: white !== null,
     });

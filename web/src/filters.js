@@ -25,18 +25,19 @@ function filterBoth(plane, width, height, kernel, mirror) {
   return filterLines(wide, height, width, width, 1, kernel, mirror);
 }
 
-/** Filter `lines` lines of `length` values that lie `step` apart. */
+/** Filter `lines` lines of `length` values that lie `step` apart, by a symmetric kernel. */
 export function filterLines(plane, length, lines, step, stride, kernel, mirror) {
   const radius = (kernel.length - 1) / 2;
   const filtered = new Float32Array(plane.length);
   const padded = new Float64Array(length + 2 * radius);
+  const places = Int32Array.from(padded, (_, at) => mirror(at - radius, length) * step);
   for (let line = 0; line < lines; line++) {
-    for (let at = 0; at < padded.length; at++) {
-      padded[at] = plane[line * stride + mirror(at - radius, length) * step];
-    }
+    for (let at = 0; at < padded.length; at++) padded[at] = plane[line * stride + places[at]];
     for (let at = 0; at < length; at++) {
-      let sum = 0;
-      for (let tap = 0; tap < kernel.length; tap++) sum += kernel[tap] * padded[at + tap];
+      let sum = kernel[radius] * padded[at + radius];
+      for (let tap = 0, end = kernel.length - 1; tap < radius; tap++, end--) {
+        sum += kernel[tap] * (padded[at + tap] + padded[at + end]);
+      }
       filtered[line * stride + at * step] = sum;
     }
   }

@@ -110,13 +110,23 @@ export class Grid {
 
   /** Set the values of an array to one where an area is that is moved by [x, y] pixels. */
   mark(values, value, area, x, y) {
-    const { width, height } = this;
-    for (let row = Math.max(0, y); row < height + Math.min(0, y); row++) {
-      const from = (row - y) * width - x;
-      const start = row * width;
-      for (let column = Math.max(0, x); column < width + Math.min(0, x); column++) {
-        if (area[from + column]) values[start + column] = value;
-      }
+    this.markPlaces(values, value, this.listPlaces(area), x, y);
+  }
+
+  /** Columns and places of the pixels of an area. */
+  listPlaces(area) {
+    const places = [];
+    for (let at = 0; at < area.length; at++) if (area[at]) places.push(at);
+    return { columns: Int32Array.from(places, (at) => at % this.width), places };
+  }
+
+  markPlaces(values, value, { columns, places }, x, y) {
+    const { width, size } = this;
+    const offset = y * width + x;
+    for (let index = 0; index < places.length; index++) {
+      const column = columns[index] + x;
+      const place = places[index] + offset;
+      if (column >= 0 && column < width && place >= 0 && place < size) values[place] = value;
     }
   }
 

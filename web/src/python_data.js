@@ -4,6 +4,9 @@ export const SENTENCES = {
   melaninDoubt: "Melanin cannot be told well from this photograph: that of {who} may be {melanin} times higher or lower than what is read.",
   hemoglobinDoubt: "Hemoglobin cannot be told from this photograph: what is read of {who} is near that of people at large.",
   lightDoubt: "The light on {who} is strongly coloured, or the camera's white balance is wrong; the pigments are only as right as the guess of it.",
+  tinted: "The skin of {who} looks tinted {tint}, as by coloured light, a filter or a wrong white balance; the pigments are only as right as the guess of it.",
+  noSkin: "No skin was found of {who}; give a picture in which nothing covers it.",
+  littleSkin: "Nearly no skin of {who} was found: only {value} % of what was read. Its means are those of this part, which may be something else; the mask shows where it is.",
   daylight: "Give a photograph in daylight, without coloured light, filters or retouching.",
   whiteDoubt: "The white balance that was given for {who} is far from what is seen without it: log R/G and log B/G are {told}, and not {blind}. Is the reference white or grey, and lit as the face is?",
   darkSkin: "Dark skin is often read as paler than it is, the more so in dark photographs: the melanin of {who} may be above its interval. A photograph with a brighter exposure helps.",
@@ -26,6 +29,9 @@ export const DOUBTS = {
   COLOURED: 0.35,
   CLIPPED_SHARE: 0.1,
   DARK_SKIN: 0.12,
+  TINTED: 10.0,
+  CASTS: ["red", "orange", "yellow", "green", "blue-green", "blue", "violet", "purple"],
+  LITTLE_SKIN: 0.1,
 };
 
 export const BALANCES = {
@@ -64,7 +70,7 @@ export const COLOUR = {
 };
 
 export const SKIN = {
-  SKIN: [0.757, -0.296],
+  USUAL_RATIOS: [0.757, -0.296],
   SKIN_PRECISION: [[37.1, 13.6], [13.6, 33.4]],
   MIN_COVARIANCE: [[0.0036, 0.0, 0.0], [0.0, 0.004900000000000001, 0.0], [0.0, 0.0, 0.1024]],
   SPECULAR_SHARES: [0.15, 0.3, 0.45, 0.6, 0.75, 0.9],

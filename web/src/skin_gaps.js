@@ -66,11 +66,12 @@ function findHighlight(skin, zones, difference, grid, side) {
 function findShortGaps(area, [x, y], longest, grid) {
   const length = Math.max(1e-6, Math.hypot(x, y));
   const count = Math.max(1, roundHalfEven(longest));
+  const places = grid.listPlaces(area);
   const [before, after] = [1, -1].map((sign) => {
     const distances = new Int32Array(grid.size).fill(count + 1);
     for (let distance = count; distance > 0; distance--) {
       const [dx, dy] = [x, y].map((axis) => roundHalfEven((sign * distance * axis) / length));
-      grid.mark(distances, distance, area, dx, dy);
+      grid.markPlaces(distances, distance, places, dx, dy);
     }
     return distances;
   });
