@@ -6,6 +6,7 @@ from typing import Any, Literal
 import numpy as np
 from numpy.typing import NDArray
 
+from skinnet.errors import InputError
 from skinnet.images._mark import Mark
 from skinnet.images._png_file import write_palette_png
 from skinnet.inference._colour_scales import PIGMENTS, SHADING, SPECULAR, Scale
@@ -16,14 +17,24 @@ ColourMaps = Literal["pigments", "all", "none"]
 """Which maps are written in colour too."""
 
 _SCALES = {**PIGMENTS, "shading": SHADING, "specular": SPECULAR}
-_NAMES = {"pigments": tuple(PIGMENTS), "all": tuple(_SCALES), "none": ()}
+_NAMES: dict[str, tuple[str, ...]] = {
+    "pigments": tuple(PIGMENTS),
+    "all": tuple(_SCALES),
+    "none": (),
+}
 
 _STRIP = 256
 """Rows that are coloured at once, which bounds the memory."""
 
 
-def list_colour_maps(which: ColourMaps) -> tuple[str, ...]:
-    """List the maps that are written in colour; their files are NAME_MAP_colour.png."""
+def list_colour_maps(which: str) -> tuple[str, ...]:
+    """List the maps that are written in colour; their files are NAME_MAP_colour.png.
+
+    Raises:
+        InputError: There is no such choice.
+    """
+    if which not in _NAMES:
+        raise InputError(f"colour_maps is {', '.join(_NAMES)}; got {which!r}.")
     return _NAMES[which]
 
 
@@ -49,14 +60,6 @@ def write_colour_map(path: Path, name: str, decomposition: Decomposition, digest
     }
     pixels = _find_colours(decomposition.get_map(name), decomposition.mask, scale)
     write_palette_png(path, pixels, palette, text | Mark("predict", "colour", digest).to_text())
-
-
-def colour_map(
-    values: NDArray[np.float32], mask: NDArray[np.float32], name: str
-) -> NDArray[np.uint8]:
-    """Colour a map [h, w] of a name; uint8 sRGB [h, w, 3], grey where the mask has no skin."""
-    skin = (mask > SKIN_THRESHOLD)[..., None]
-    return np.where(skin, _SCALES[name].colour(values), np.array(BLANK, np.uint8))
 
 
 def _find_colours(

@@ -1,5 +1,6 @@
 """How far a run over many files is: a bar on a terminal, else a line a minute."""
 
+import shutil
 import sys
 import time
 from collections.abc import Callable, Iterator
@@ -15,6 +16,9 @@ Advance = Callable[[int], None]
 """Say that one more file is done, and how many have failed so far."""
 
 _BAR = "{n_fmt} of {total_fmt} |{bar:24}| {rate_noinv_fmt}, {remaining} left{postfix}"
+
+_WIDEST = 100
+"""Columns of the bar at most."""
 
 _EVERY = 60.0
 """Seconds between two lines where standard error is no terminal."""
@@ -48,8 +52,11 @@ def _is_terminal(stream: Any) -> bool:
 def _draw_bar(total: int) -> Iterator[Advance]:
     from tqdm import tqdm  # here, since it takes a twentieth of a second
 
-    format_ = {"bar_format": _BAR, "unit": " photographs", "dynamic_ncols": True, "leave": False}
-    with tqdm(total=total, file=sys.stderr, **format_) as bar:
+    # tqdm itself shows nothing on a terminal that does not know its size.
+    width = min(shutil.get_terminal_size().columns, _WIDEST)
+    size = {"ncols": width, "nrows": 20}
+    words = {"bar_format": _BAR, "unit": " photographs", "leave": False}
+    with tqdm(total=total, file=sys.stderr, **size, **words) as bar:
         out, err = (_AboveBar(stream, bar) for stream in (sys.stdout, sys.stderr))
         with redirect_stdout(cast(TextIO, out)), redirect_stderr(cast(TextIO, err)):
             yield lambda failed: _advance(bar, failed)

@@ -1,6 +1,8 @@
 """A bar on a terminal; what is printed meanwhile stands above it."""
 
 import io
+import os
+import subprocess
 import sys
 from collections.abc import Iterator
 from contextlib import contextmanager, redirect_stderr, redirect_stdout
@@ -67,3 +69,18 @@ def test_off_a_terminal_a_line_is_printed_now_and_then(
         "skinnet: 2 of 5 done, 1 failed, 0.029 per second, about 2 min left.\n"
         "skinnet: 4 of 5 done, 1 failed, 0.029 per second, about 1 min left.\n"
     )
+
+
+@pytest.mark.skipif(os.name != "posix", reason="Windows has no pseudo-terminals of this kind")
+def test_a_terminal_that_does_not_know_its_size_has_a_bar() -> None:
+    main, terminal = os.openpty()  # 0 x 0, as in some containers
+    code = (
+        "from skinnet.inference._progress import show_progress\n"
+        "with show_progress(2) as advance:\n"
+        "    advance(1)\n"
+    )
+    done = subprocess.run([sys.executable, "-c", code], stdout=terminal, stderr=terminal)
+    os.close(terminal)
+    text = os.read(main, 4096).decode()
+    os.close(main)
+    assert done.returncode == 0 and "0 of 2 |" in text
