@@ -32,7 +32,7 @@ _VIEW = {"elev": 14, "azim": -25}
 
 
 def draw_spectra(dpi: int) -> NDArray[np.uint8]:
-    """Draw reflectance with more melanin, and with more blood, in a row for each preset."""
+    """Draw reflectance with more melanin, and with more blood (Figure 2), a preset a row."""
     figure = _make_figure(10.5, 7.2, dpi)
     axes = figure.subplots(2, 2, sharex=True, sharey="row")
     for row, (preset, name) in zip(axes, PRESETS.items(), strict=True):
@@ -82,7 +82,7 @@ def measure_curvature(colours: NDArray[np.float64]) -> tuple[float, float]:
 
 
 def draw_colours(dpi: int, nodes: int = 96) -> NDArray[np.uint8]:
-    """Draw the surface of skin colours in RGB and as an image, in a row for each preset."""
+    """Draw the surface of skin colours in RGB and as an image (Figure 3), a preset a row."""
     figure = _make_figure(10.5, 7.8, dpi)
     for row, preset in enumerate(PRESETS):
         colours = compute_colours(preset, nodes)

@@ -8,7 +8,6 @@ from dataclasses import asdict
 from pathlib import Path
 from typing import Any
 
-<<<<<<< HEAD
 from skinnet.errors import InputError, _explain_missing
 from skinnet.inference._command.assumptions import describe_versions
 from skinnet.inference._command.spelling import spell_flags
@@ -24,13 +23,6 @@ from skinnet.inference._messages import (
     report,
     set_verbosity,
 )
-=======
-from skinnet.errors import InputError
-from skinnet.inference._command.assumptions import describe_versions
-from skinnet.inference._command.spelling import spell_flags
-from skinnet.inference._command.verb_parser import VerbParser, read_verbosity
-from skinnet.inference._messages import explain, keep_verbosity, log, print_line, set_verbosity
->>>>>>> origin/cli
 
 _DESCRIPTION = (
     "Write a checkpoint as ONNX, compared with torch: the encoder to FILE, and beside it the "
@@ -66,10 +58,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 def main(arguments: Sequence[str] | None = None) -> int:
     """Export a checkpoint; return 0, or 2 with a sentence on stderr for bad input."""
-<<<<<<< HEAD
     open_missing_streams()
-=======
->>>>>>> origin/cli
     with keep_verbosity():
         return _run(list(sys.argv[1:] if arguments is None else arguments))
 
@@ -120,7 +109,6 @@ def _export(options: argparse.Namespace) -> None:
     reports = export_model(model, output, half, describe_checkpoint(checkpoint, output))
     sizes = ", ".join("x".join(map(str, size)) for size in SIZES)
     log(f"compared with torch at {sizes} (batch x height x width)")
-<<<<<<< HEAD
     for each in reports:
         _print(each, options.json)
 
@@ -133,20 +121,6 @@ def _print(written: Any, as_json: bool) -> None:
     print_line(
         f"{written.path}: {written.megabytes:.2f} MB, largest difference {worst:.1e} of "
         f"the range ({name}), {written.milliseconds:.0f} ms at 256 x 256"
-=======
-    for report in reports:
-        _print(report, options.json)
-
-
-def _print(report: Any, as_json: bool) -> None:
-    name, worst = max(report.difference.items(), key=lambda item: item[1])
-    if as_json:
-        print_line(json.dumps({**asdict(report), "path": str(report.path)}, default=float))
-        return
-    print_line(
-        f"{report.path}: {report.megabytes:.2f} MB, largest difference {worst:.1e} of "
-        f"the range ({name}), {report.milliseconds:.0f} ms at 256 x 256"
->>>>>>> origin/cli
     )
 
 

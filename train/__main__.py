@@ -10,23 +10,10 @@ os.environ.setdefault("OMP_WAIT_POLICY", "PASSIVE")
 def run() -> int:
     """Run the training command or print its help; without the extra, print a sentence."""
     from skinnet.errors import InputError
-<<<<<<< HEAD
     from skinnet.inference._messages import open_missing_streams, quit_at_interrupt
     from train.usage import answer
 
     open_missing_streams()
-=======
-    from train.usage import answer
-
-    try:
-        text = answer(sys.argv[1:])
-    except InputError as error:
-        print(f"train: {error}", file=sys.stderr)
-        return 2
-    if text is not None:
-        print(text)
-        return 0
->>>>>>> origin/cli
     try:
         text = answer(sys.argv[1:])
     except InputError as error:

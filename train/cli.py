@@ -22,11 +22,7 @@ from skinnet.errors import InputError
 from skinnet.inference._command.assumptions import describe_versions
 from skinnet.inference._command.spelling import spell_keys
 from skinnet.inference._command.verb_parser import take_verbosity
-<<<<<<< HEAD
 from skinnet.inference._messages import Verbosity, note, note_removed, report
-=======
-from skinnet.inference._messages import Verbosity
->>>>>>> origin/cli
 from skinnet.network import read_checkpoint
 from skinnet.pipeline._sentence_parser import SentenceParser
 from train.callbacks import (

@@ -84,14 +84,10 @@ class ColourSettings:
 
     def check(self) -> None:
         """Raise `InputError` for names and files that cannot be used, before long work begins."""
-<<<<<<< HEAD
         _check_count("seed", self.seed)
         for name in ("f_mel", "f_blood"):  # as the table does, which is made after the fits
             _check_axis(name, *getattr(self, name))
         load_spectrum_to_srgb(self.light_name, self.camera)
-=======
-        load_spectrum_to_srgb(self.light_name, self.camera)
->>>>>>> origin/cli
         SkinOptics.preset(self.optics)
         self.balance()
         if self.calibration not in _WAYS:
