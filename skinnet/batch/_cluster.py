@@ -2,15 +2,17 @@
 
 import logging
 import os
+import re
 import subprocess
 import sys
 from collections.abc import Iterator, Sequence
-from contextlib import contextmanager
-from typing import Any
+from contextlib import contextmanager, redirect_stdout
+from typing import Any, TextIO, cast
 
 from skinnet.batch._job import Job
 from skinnet.batch._worker import Worker
 from skinnet.errors import InputError
+from skinnet.inference._messages import explain
 
 _SECONDS = 60
 """Time for a cluster to answer; Ray itself waits for minutes."""
@@ -51,7 +53,8 @@ def connect(address: str | None) -> Iterator[int]:
     except (ConnectionError, RuntimeError, ValueError, OSError) as error:
         raise InputError(_describe(address, str(error))) from error
     try:
-        yield max(1, int(ray.cluster_resources().get("CPU", 1)))
+        with redirect_stdout(cast(TextIO, _Log())):
+            yield max(1, int(ray.cluster_resources().get("CPU", 1)))
     finally:
         ray.shutdown()
 
@@ -114,6 +117,20 @@ def read_blocks(job: Job, count: int, workers: int | None, cores: int) -> Iterat
             yield int(row["block"]), str(row["fault"])
     except ray.exceptions.RayError as error:
         raise InputError(_describe_failure(error)) from error
+
+
+class _Log:
+    """Takes what Ray prints among the results, such as that a worker died; -v shows it."""
+
+    def write(self, text: str) -> int:
+        """Print lines to standard error."""
+        for line in re.sub(r"\x1b\[\d*m", "", text).splitlines():
+            if line.strip():
+                explain(line.strip())
+        return len(text)
+
+    def flush(self) -> None:
+        """Nothing waits."""
 
 
 @contextmanager

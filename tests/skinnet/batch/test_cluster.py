@@ -12,7 +12,7 @@ from typing import Any
 
 import numpy as np
 import pytest
-from batch_files import read_rows
+from batch_files import list_parts, read_rows
 from PIL import Image
 from skimage.data import astronaut
 
@@ -72,7 +72,7 @@ def read(photos: Path, output: Path, address: str) -> "subprocess.Popen[str]":
 def wait_for_parts(output: Path, count: int, process: "subprocess.Popen[str]") -> None:
     """Wait until some parts are written; the run must still go on then."""
     end = time.monotonic() + SECONDS
-    while len(list(output.glob("part-*"))) < count:
+    while len(list_parts(output)) < count:
         assert process.poll() is None and time.monotonic() < end, process.communicate()[1]
         time.sleep(0.05)
 
@@ -120,17 +120,15 @@ def test_each_photograph_is_there_once_whatever_dies(
     cluster: dict[str, Any], photos: Path, expected: dict[str, Any], tmp_path: Path
 ) -> None:
     end: Callable[[int], None] = cluster["end"]
-    run = read(photos, tmp_path / "one", cluster["address"])
-    wait_for_parts(tmp_path / "one", 2, run)
-    (worker, *_) = [one for machine in cluster["processes"] for one in list_workers(machine)]
-    os.kill(worker, signal.SIGKILL)
-    check(run, tmp_path / "one", expected)
-
-    run = read(photos, tmp_path / "two", cluster["address"])
-    wait_for_parts(tmp_path / "two", 2, run)
+    output, first = tmp_path / "out", cluster["processes"][0]
+    run = read(photos, output, cluster["address"])
+    wait_for_parts(output, 2, run)
     run.kill()  # the command itself; the same command goes on
     run.communicate()
-    run = read(photos, tmp_path / "two", cluster["address"])
-    wait_for_parts(tmp_path / "two", 6, run)
+    run = read(photos, output, cluster["address"])
+    wait_for_parts(output, len(list_parts(output)) + 1, run)
+    for worker in list_workers(first):
+        os.kill(worker, signal.SIGKILL)
+    wait_for_parts(output, len(list_parts(output)) + 2, run)
     end(1)
-    check(run, tmp_path / "two", expected)
+    check(run, output, expected)
