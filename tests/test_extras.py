@@ -59,3 +59,11 @@ def test_a_verb_needs_no_embree() -> None:
     done = run_without("embreex", ABSENT_SCAN)
     assert done.returncode == 2
     assert "absent.obj" in done.stderr and "pip install" not in done.stderr
+
+
+@pytest.mark.parametrize("missing", ["ray", "pyarrow"])
+def test_a_batch_without_the_ray_extra_names_it(missing: str) -> None:
+    code = "from skinnet.batch.__main__ import main\nsys.exit(main(['absent', 'out']))\n"
+    done = run_without(missing, code)
+    assert done.returncode == 2
+    assert 'pip install "skinnet[ray]"' in done.stderr and "Traceback" not in done.stderr

@@ -68,7 +68,7 @@ def import_ray() -> Any:
     os.environ.update({name: os.environ.get(name, value) for name, value in _QUIET.items()})
     try:
         import ray
-        import ray.data
+        import ray.data  # noqa: F401  # `import ray` alone does not load it
     except ModuleNotFoundError as error:
         raise InputError(
             'python -m skinnet.batch needs the ray extra: pip install "skinnet[ray]"'

@@ -7,7 +7,9 @@ from typing import Any, NamedTuple
 
 from skinnet._version import __version__
 from skinnet.errors import InputError
+from skinnet.inference._face_choice import FaceChoice
 from skinnet.inference._onnx_pair import get_decoder_path
+from skinnet.inference._subject import Region
 from skinnet.inference.decomposer import Decomposer
 from skinnet.inference.onnx_model import SHIPPED_ENCODER
 
@@ -32,8 +34,8 @@ class Model(NamedTuple):
 class Reading(NamedTuple):
     """How photographs are read, as for `Decomposer.__call__`."""
 
-    faces: int | str = "largest"
-    region: str = "face"
+    faces: FaceChoice = "largest"
+    region: Region = "face"
     detail: bool = True
     maps: bool = False
 

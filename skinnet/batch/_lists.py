@@ -33,7 +33,7 @@ def list_paths(place: Place, column: str | None) -> list[Photograph]:
     if place.path.lower().endswith(".txt"):
         if column is not None:
             _refuse(place, f"is a list with one path a line, and has no column {column}")
-        names = (line.strip("\r\n") for line in StringIO(text))
+        names: Iterable[str] = (line.strip("\r\n") for line in StringIO(text))
     else:
         names = _read_column(place, text, column or PATH_COLUMN)
     found = [name for name in names if name.strip()]

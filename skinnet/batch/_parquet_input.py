@@ -126,9 +126,7 @@ def open_parquet(place: Place) -> Iterator[pq.ParquetFile]:
             yield parquet
 
 
-def _check_column(
-    place: Place, file: pq.ParquetFile, what: str, column: str, fits: Any
-) -> None:
+def _check_column(place: Place, file: pq.ParquetFile, what: str, column: str, fits: Any) -> None:
     known = dict(_list_columns(file.schema_arrow))
     if column not in known:
         _refuse(place, f"has no column {column}", what, known)

@@ -1,4 +1,4 @@
-"""Files and folders by their paths and URLs: on this machine, s3://, gs://, and what fsspec knows."""
+"""Files and folders by their paths and URLs: on this machine, in s3://, gs://, and by fsspec."""
 
 import os
 import re

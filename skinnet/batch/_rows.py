@@ -63,7 +63,9 @@ def make_schema(lights: Sequence[str], maps: bool) -> pa.Schema:
     )
 
 
-def read_rows(decomposer: Decomposer, content: Content, reading: Reading, model: Model) -> list[Row]:
+def read_rows(
+    decomposer: Decomposer, content: Content, reading: Reading, model: Model
+) -> list[Row]:
     """Read a photograph, whatever it is. A fault of one does not end the others."""
     about = _describe(content.photograph, model)
     if content.source is None:
@@ -75,7 +77,9 @@ def read_rows(decomposer: Decomposer, content: Content, reading: Reading, model:
     except (InputError, OSError) as error:
         return [about | {"status": FAILED, "reason": describe(error)}]
     except Exception as error:
-        reason = f"An unexpected fault of skinnet: {type(error).__name__}: {error}; please report it."
+        reason = (
+            f"An unexpected fault of skinnet: {type(error).__name__}: {error}; please report it."
+        )
         return [about | {"status": FAILED, "reason": reason}]
 
 
@@ -101,10 +105,8 @@ def _describe(photograph: Photograph, model: Model) -> Row:
 def _read(decomposer: Decomposer, content: Content, reading: Reading) -> Iterator[Row]:
     source, name = content.source, content.photograph.file
     assert source is not None
-    is_path = isinstance(source, Path)
-    digest = compute_digest(source) if is_path else hashlib.sha256(source).hexdigest()
-    notes = check_mark(read_mark(source if is_path else BytesIO(source)), name)
-    picture = read_picture(source if is_path else BytesIO(source), name)
+    notes = check_mark(read_mark(_open(source)), name)
+    picture, digest = read_picture(_open(source), name), _compute_digest(source)
     found = decomposer(
         picture,
         name=name,
@@ -117,6 +119,16 @@ def _read(decomposer: Decomposer, content: Content, reading: Reading) -> Iterato
         row["notes"] = [*notes, *row["notes"]]
         maps = _encode_maps(each, digest) if reading.maps else {}
         yield {"status": READ, "input_sha256": digest} | row | maps
+
+
+def _open(source: Path | bytes) -> Path | BytesIO:
+    return source if isinstance(source, Path) else BytesIO(source)
+
+
+def _compute_digest(source: Path | bytes) -> str:
+    if isinstance(source, Path):
+        return compute_digest(source)
+    return hashlib.sha256(source).hexdigest()
 
 
 def _encode_maps(decomposition: Decomposition, digest: str) -> dict[str, bytes]:

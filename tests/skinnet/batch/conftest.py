@@ -20,9 +20,7 @@ def connect(address: str | None) -> Iterator[int]:
     yield 2
 
 
-def read_blocks(
-    job: Job, count: int, workers: int | None, cores: int
-) -> Iterator[tuple[int, str]]:
+def read_blocks(job: Job, count: int, workers: int | None, cores: int) -> Iterator[tuple[int, str]]:
     """One worker, in this process."""
     worker = Worker(job)
     for number in range(count):

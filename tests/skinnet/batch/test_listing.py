@@ -12,7 +12,6 @@ from skinnet.batch._listing import Columns, list_photographs
 from skinnet.batch._places import find_place
 from skinnet.errors import InputError
 
-
 USUAL = Columns()
 
 
