@@ -52,11 +52,11 @@ def connect(address: str | None) -> Iterator[int]:
             ray.init(address, log_to_driver=False, logging_level=logging.ERROR, **store)
     except (ConnectionError, RuntimeError, ValueError, OSError) as error:
         raise InputError(_describe(address, str(error))) from error
-    try:
-        with redirect_stdout(cast(TextIO, _Log())):
+    with redirect_stdout(cast(TextIO, _Log())):
+        try:
             yield max(1, int(ray.cluster_resources().get("CPU", 1)))
-    finally:
-        ray.shutdown()
+        finally:
+            ray.shutdown()
 
 
 def import_ray() -> Any:
