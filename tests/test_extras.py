@@ -94,3 +94,11 @@ def test_the_modules_of_an_extra_are_those_of_its_packages(extra: str) -> None:
     owners = packages_distributions()
     for module in _EXTRAS[extra] - {"cv2"}:  # of a package of the detector of charts
         assert brought & {each.lower().replace("_", "-") for each in owners.get(module, [])}
+
+
+@pytest.mark.parametrize("missing", ["ray", "pyarrow"])
+def test_a_batch_without_the_ray_extra_names_it(missing: str) -> None:
+    code = "from skinnet.batch.__main__ import main\nsys.exit(main(['absent', 'out']))\n"
+    done = run_without(missing, code)
+    assert done.returncode == 2
+    assert 'pip install "skinnet[ray]"' in done.stderr and "Traceback" not in done.stderr

@@ -14,6 +14,7 @@ from pipeline_scans import FAST, write_scan
 from small_runs import SMALL
 
 import train.cli
+from skinnet.batch.__main__ import make_parser
 from skinnet.cli import main
 from skinnet.inference import SHIPPED_ENCODER, open_model
 from skinnet.inference._onnx_pair import get_decoder_path
@@ -141,6 +142,8 @@ def run_python(words: list[str]) -> None:
     """
     if words[1].startswith(("examples.", "tools.")):
         assert words[0] == "-m" and find_spec(words[1]) is not None, words
+    elif words[:2] == ["-m", "skinnet.batch"]:  # tests/skinnet/batch run it
+        make_parser().parse(words[2:])
     elif words[:2] == ["-m", "export"]:
         checkpoint, flag, output = words[2:]
         assert Path(checkpoint).is_file() and flag == "-o"

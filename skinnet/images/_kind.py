@@ -141,6 +141,12 @@ def promises_picture(name: str, kind: Kind) -> bool:
     return suffix in _PICTURE_SUFFIXES or (suffix in HEIF_SUFFIXES and kind is not HEIF)
 
 
+def has_picture_ending(name: str) -> bool:
+    """Whether a name ends as those of pictures, HEIF and RAW files do."""
+    suffix = Path(name).suffix.lower()
+    return suffix in _PICTURE_SUFFIXES | HEIF_SUFFIXES | _RAW_SUFFIXES
+
+
 def is_heif(data: bytes) -> bool:
     """Whether the first bytes of a file are those of a HEIC or HEIF picture."""
     return _identify_start(data[:_HEAD]) is HEIF
