@@ -31,9 +31,9 @@ _SENTENCES = {
     "melaninDoubt": (doubts, "Melanin cannot be told"),
     "hemoglobinDoubt": (doubts, "Hemoglobin cannot be told"),
     "lightDoubt": (doubts, "is strongly coloured"),
-    "tinted": (doubts, "looks tinted"),
+    "tinted": (doubts, "looks tinted ... the pigments"),
     "noSkin": (doubts, "No skin was found of"),
-    "littleSkin": (doubts, "Nearly no skin of"),
+    "littleSkin": (doubts, "Nearly no skin of ... Its means"),
     "daylight": (doubts, "Give a photograph in daylight"),
     "whiteDoubt": (profile_use, "is far from what is seen without it"),
     "darkSkin": (doubts, "Dark skin is often read as paler"),
@@ -138,14 +138,16 @@ def _write(part: dict[str, Any]) -> str:
 def _find_sentence(module: ModuleType, words: str) -> str:
     """The one text of a module with some words; `{name}` stands for what is filled in.
 
-    What follows a semicolon about `--region` is for the command alone.
+    Words that stand apart in it are separated by dots. What follows a semicolon about `--region` is
+    for the command alone.
     """
     nodes = list(ast.walk(ast.parse(inspect.getsource(module))))
     wholes = [node for node in nodes if isinstance(node, ast.JoinedStr)]
     inner = {id(part) for whole in wholes for part in ast.walk(whole) if part is not whole}
     inner |= {id(node.value) for node in nodes if isinstance(node, ast.Expr)}  # docstrings
     texts = (_read_text(node) for node in nodes if id(node) not in inner)
-    (found,) = {text for text in texts if words in text}
+    parts = words.split(" ... ")
+    (found,) = {text for text in texts if all(part in text for part in parts)}
     before, option, _ = found.partition("; --region")
     return f"{before}." if option else found
 

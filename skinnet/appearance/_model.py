@@ -138,7 +138,14 @@ class AppearanceModel(nn.Module, ABC):
     def decode(
         self, features: Float[Tensor, "*batch channels texels"]
     ) -> Float[Tensor, "*batch 3 texels"]:
-        """Decode features to linear RGB."""
+        """Decode features to linear RGB.
+
+        Args:
+            features: Features [..., channels, texels].
+
+        Returns:
+            Linear RGB [..., 3, texels].
+        """
 
     @abstractmethod
     def colour_errors(
@@ -155,6 +162,9 @@ class AppearanceModel(nn.Module, ABC):
             stack: The subjects.
             grams: Inner products between their features, from `compute_grams`.
             texels: Number of texels of the mask to compare at; None: all.
+
+        Returns:
+            The differences, for any weights.
         """
 
     @property

@@ -41,7 +41,8 @@ def check_weights(path: Path, remedy: str) -> None:
 def check_values(path: Path, name: str, values: NDArray[Any], largest: float, remedy: str) -> None:
     """Raise `InputError` unless all values are numbers that are not larger than a limit."""
     with np.errstate(invalid="ignore"):
-        wrong = ~(np.abs(values) <= largest)
+        # Half precision cannot hold the limit.
+        wrong = ~(np.abs(values, dtype=np.promote_types(values.dtype, np.float32)) <= largest)
     if wrong.any():
         raise InputError(
             f"{path} has weights that are no weights of a trained model: {values[wrong][0]:g} in "

@@ -110,14 +110,17 @@ def refuse_mismatch(path: Path, version: object = None) -> Iterator[None]:
     """Turn an error of rebuilding a model from its description into `InputError`."""
     try:
         yield
-    except InputError:
-        raise
+    except InputError as error:
+        if version in (None, __version__):
+            raise
+        raise InputError(f"{error} ({path}: {_name_versions(version)})") from error
     except (KeyError, TypeError, ValueError, RuntimeError, AttributeError, OverflowError) as error:
-        wrote = f"skinnet {version} wrote it, and this is skinnet {__version__}"
-        other = version not in (None, __version__)
-        raise InputError(
-            f"{path} does not hold the model that it describes" + (f"; {wrote}." if other else ".")
-        ) from error
+        wrote = "" if version in (None, __version__) else f"; {_name_versions(version)}"
+        raise InputError(f"{path} does not hold the model that it describes{wrote}.") from error
+
+
+def _name_versions(version: object) -> str:
+    return f"skinnet {version} wrote it, and this is skinnet {__version__}"
 
 
 def make_format_error(path: str | Path, found: object, version: object) -> InputError:

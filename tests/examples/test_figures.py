@@ -13,7 +13,7 @@ from skinnet.cli import main as skinnet
 from skinnet.pipeline import relight
 
 PEOPLE, TEXELS = "3", "32"
-QUICK = {"maps": FAST, "build-model": ("--model.samples=3",)}
+QUICK = {"maps": FAST, "build-model": ("--appearance.samples=3",)}
 
 
 def read(path: Path) -> np.ndarray:

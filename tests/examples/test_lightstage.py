@@ -9,7 +9,7 @@ from examples import lightstage
 from skinnet.cli import main as skinnet
 from skinnet.pipeline import relight
 
-QUICK = {"maps": FAST, "build-model": ("--model.samples=3",)}
+QUICK = {"maps": FAST, "build-model": ("--appearance.samples=3",)}
 
 
 @pytest.mark.slow

@@ -25,8 +25,8 @@ def run_quickly(words: list[str]) -> int:
 
 def run_procedurally(words: list[str]) -> int:
     """Run a command without ICT-FaceKit; the procedural model fits the scans of these tests."""
-    if "--model" in words:
-        place = words.index("--model")
+    if "--shape" in words:
+        place = words.index("--shape")
         words = [*words[:place], *words[place + 2 :]]
     if "--colour.white" in words:  # The texture of these scans is white-balanced.
         place = words.index("--colour.white")
