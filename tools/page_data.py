@@ -174,7 +174,7 @@ def _round(limit: Any) -> Any:
     if isinstance(limit, np.ndarray | tuple):
         return [_round(each) for each in limit]
     if isinstance(limit, np.generic):
-        return float(str(limit))
+        return float(np.format_float_scientific(limit))  # whatever the print options are
     return limit
 
 
