@@ -173,7 +173,7 @@ def _round(limit: Any) -> Any:
     """A limit as numbers of JSON; those of single precision by their shortest digits."""
     if isinstance(limit, np.ndarray | tuple):
         return [_round(each) for each in limit]
-    if isinstance(limit, np.generic):
+    if isinstance(limit, np.floating | np.integer):
         return float(np.format_float_scientific(limit))  # whatever the print options are
     return limit
 
