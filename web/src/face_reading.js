@@ -102,6 +102,13 @@ export class FaceReading {
     return head;
   }
 
+  /** Compute what all edits of the view need, so that the first one takes no longer than others. */
+  async prepareEdits() {
+    const head = { ...this.head, data: this.head.data.slice() };
+    const change = await this.editor.computeChange(UNCHANGED);
+    this.editor.apply(head, this.headMask, change, this.known);
+  }
+
   /** Edit the photograph in a canvas, at its full size. */
   async editCanvas(context) {
     if (isUnchanged(this.factors)) return;

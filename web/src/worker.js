@@ -49,7 +49,13 @@ let queue = Promise.resolve();
 
 self.onmessage = ({ data: { id, name, options } }) => {
   queue = queue.then(() => answer(id, name, options));
+  if (name.startsWith("read")) queue = queue.then(prepare);
 };
+
+/** Prepare the edits of what was read; an edit itself reports what goes wrong. */
+async function prepare() {
+  await session?.reading?.prepareEdits().catch(() => {});
+}
 
 async function answer(id, name, options) {
   try {
