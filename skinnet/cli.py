@@ -130,8 +130,10 @@ def _count_leading_flags(arguments: list[str]) -> int:
 
 def _run_verb(verb: str, arguments: list[str]) -> int:
     if verb not in _VERBS:
+        meant = f" Did you mean skinnet predict {verb}?" if os.path.exists(verb) else ""
         raise InputError(
-            f"There is no verb {verb}.{suggest(verb, _VERBS)} (skinnet --help lists the verbs)"
+            f"There is no verb {verb}.{meant or suggest(verb, _VERBS)} "
+            "(skinnet --help lists the verbs)"
         )
     parser = _make_parser(verb)
     if _wants_help(arguments):

@@ -6,6 +6,8 @@ from pathlib import Path
 
 from skinnet._version import __version__
 
+_PHOTOGRAPHS = "skinnet predict and skinnet edit take photographs as their input"
+
 _STARTS = (
     (b"version https://git-lfs", "a pointer of Git LFS", "fetch the file itself: git lfs pull"),
     (b"version https://hawser", "a pointer of Git LFS", "fetch the file itself: git lfs pull"),
@@ -19,8 +21,8 @@ _STARTS = (
     (b"\x89HDF", "a file in HDF5, such as a model of Keras", ""),
     (b"GGUF", "a model in GGUF", ""),
     (b"\x93NUMPY", "an array of NumPy", ""),
-    (b"\x89PNG", "a picture", "give it as the input"),
-    (b"\xff\xd8\xff", "a picture", "give it as the input"),
+    (b"\x89PNG", "a picture", _PHOTOGRAPHS),
+    (b"\xff\xd8\xff", "a picture", _PHOTOGRAPHS),
     (b"%PDF", "a PDF file", ""),
 )
 """First bytes of files that people take for others, what they are, and what to do."""

@@ -18,6 +18,7 @@ STDIN = "-"
 RESULT = Kind("a result of skinnet", "results of skinnet", "give the photograph itself")
 SECOND_NAME = Kind("a second name of a file", "second names of files", "it is read once")
 _FOLDER_AGAIN = Kind("a second way to a folder", "second ways to folders", "it is read once")
+_ADDRESS = re.compile(r"\w+://")
 _FORMATS = "JPEG, PNG, TIFF, WebP, AVIF, JPEG 2000, BMP, GIF or PPM files, whatever their ending"
 _MOST_NAMES = 3
 
@@ -165,6 +166,11 @@ class _Walker:
             self._fail(source, files.describe_link(source))
         elif glob.has_magic(source):
             self._add_pattern(source)
+        elif _ADDRESS.match(source):
+            sentence = (
+                "is an address; skinnet opens no connections. Load the file, and give its path."
+            )
+            self._fail(source, f"{source} {sentence}")
         else:
             self.found.pictures.append(Found(source))  # reading it says what is wrong
 
@@ -198,6 +204,11 @@ class _Walker:
             pass  # a pattern of the shell, *, has named skinmaps too
         elif pictures:
             sentence = f"holds no photographs itself, but {where}; --recursive reads them."
+            self._fail(source, f"The folder {source} {sentence}")
+        elif self._has_results(passed_over):
+            sentence = (
+                "holds only results of skinnet; give the photographs that they were made from."
+            )
             self._fail(source, f"The folder {source} {sentence}")
         else:
             sentence = f"The folder {source} holds no photographs; {describe_formats()}."

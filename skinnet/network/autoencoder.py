@@ -10,6 +10,7 @@ from jaxtyping import Float
 from kornia.color import rgb_to_linear_rgb
 from torch import Tensor, nn
 
+from skinnet.errors import InputError
 from skinnet.network._earlier_weights import EARLIER_FORMAT, upgrade_config, upgrade_weights
 from skinnet.network._known_capture import KNOWN_VALUES, KnownCapture
 from skinnet.network._tone_factors import find_factors, measure_tone
@@ -51,6 +52,9 @@ _MIRED = (40.0, 250.0)
 
 _SAMPLES = 8
 """Steps of melanin and of blood in the skin by which colours of a known capture are turned."""
+
+_ROUNDING = 1e-3
+"""How far outside [0, 1] a photograph may lie, as half precision rounds it."""
 
 _MAP_CHANNELS = 7
 _GLOBAL_CHANNELS = len(LIGHTS) + 1 + CAMERA_COMPONENTS + 2 + 2
@@ -333,7 +337,11 @@ class SkinAutoencoder(nn.Module):
 
         Returns:
             Maps, capture and uncertainty. What is known of the capture is returned as it is.
+
+        Raises:
+            InputError: The photographs have another shape, or values outside [0, 1].
         """
+        _check_photograph(photograph)
         linear = rgb_to_linear_rgb(photograph)
         given = self.known.complete(known, photograph.shape[0], linear)
         normal = self.known.normalise(linear, given, self.decoder.camera)
@@ -361,3 +369,21 @@ class SkinAutoencoder(nn.Module):
         """
         pixels = (maps.melanin, maps.hemoglobin, maps.shading, maps.specular, maps.offset)
         return self.decoder.compose(*pixels, capture)
+
+
+def _check_photograph(photograph: Tensor) -> None:
+    """Refuse what is no batch of photographs; nothing is checked while a graph is exported."""
+    if torch.compiler.is_compiling():
+        return
+    if photograph.ndim != 4 or photograph.shape[1] != 3:
+        raise InputError(
+            "Photographs are a tensor [batch, 3, height, width]; got one of shape "
+            f"{list(photograph.shape)}."
+        )
+    if not photograph.numel():
+        return
+    low, high = (float(bound) for bound in photograph.detach().aminmax())
+    if low < -_ROUNDING or high > 1 + _ROUNDING:
+        wrong = high if high > 1 + _ROUNDING else low
+        hint = " Divide 8-bit values by 255." if wrong > 2 else ""
+        raise InputError(f"Photographs have display sRGB in [0, 1]; got {wrong:g}.{hint}")

@@ -561,3 +561,38 @@ def test_what_runs_the_networks_is_chosen(
     assert "pip install onnxruntime-gpu" in capsys.readouterr().err
     assert main([*arguments, "gpu"]) == 2
     assert "There is no execution provider 'gpu'" in capsys.readouterr().err
+
+
+@pytest.mark.parametrize(
+    ("words", "sentence"),
+    [
+        (["photo.png"], "Did you mean skinnet predict photo.png?"),
+        (["predict", "https://example.org/a.jpg"], "is an address"),
+        (["predict", "photo.png", "-o", "-"], "-o is a folder"),
+        (["predict", "--report", "photo.png"], "--report has taken photo.png"),
+        (["predict", "-dash.png"], "give files after --"),
+        (["edit", "photo.png", "-melanin", "2"], "Did you mean --melanin?"),
+        (["edit", "photo.png", "--melanin", "1,5"], "A point stands before decimals."),
+    ],
+)
+def test_a_slip_of_a_newcomer_is_answered(
+    words: list[str],
+    sentence: str,
+    tmp_path: Path,
+    monkeypatch: pytest.MonkeyPatch,
+    capsys: pytest.CaptureFixture[str],
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    for name in ("photo.png", "-dash.png"):
+        Path(name).touch()
+    assert main(words) == 2
+    assert sentence in capsys.readouterr().err
+
+
+def test_a_folder_of_results_alone_says_so(
+    photo: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    folder = tmp_path / "tanned"
+    assert main(["edit", str(photo), "--melanin", "1.5", "-o", f"{folder}/"]) == 0
+    assert main(["edit", str(folder), "--melanin", "1.5"]) == 2
+    assert "tanned holds only results of skinnet" in capsys.readouterr().err

@@ -34,10 +34,19 @@ def add_folder(verb: argparse.ArgumentParser, usual: str) -> None:
     verb.add_argument(
         "-o",
         "--output",
-        type=Path,
+        type=_read_folder,
         metavar="DIR",
         help=f"folder to write to; by default skinmaps in {usual}",
     )
+
+
+def _read_folder(word: str) -> Path:
+    if word == "-":
+        raise argparse.ArgumentTypeError(
+            "-o is a folder, since several files are written; --json prints the numbers to "
+            "standard output."
+        )
+    return Path(word)
 
 
 def add_model(verb: argparse.ArgumentParser) -> None:

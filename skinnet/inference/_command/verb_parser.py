@@ -1,8 +1,10 @@
 """The parser of one verb: its help ends with examples, and a mistake is one sentence."""
 
 import argparse
+import os
 import re
 from collections.abc import Callable, Sequence
+from itertools import pairwise
 from typing import Any, NoReturn
 
 from skinnet.errors import InputError
@@ -68,6 +70,7 @@ class VerbParser(argparse.ArgumentParser):
             allow_abbrev=False,
         )
         self.name = prog.removeprefix("skinnet ")
+        self._given: list[str] = []
         if add is not None:
             add(self)
         add_verbosity(self)
@@ -85,9 +88,13 @@ class VerbParser(argparse.ArgumentParser):
             InputError: For the first mistake, with the nearest valid word.
         """
         self.check_flags(arguments)
-        options, others = self.parse_known_args(list(arguments))
+        self._given = list(arguments)
+        options, others = self.parse_known_args(self._given)
         if others:
-            self.refuse(f"{self.name} does not know what {others[0]!r} is for.")
+            flags = self._option_string_actions if others[0].startswith("-") else ()
+            self.refuse(
+                f"{self.name} does not know what {others[0]!r} is for.{suggest(others[0], flags)}"
+            )
         return options
 
     def check_flags(self, arguments: Sequence[str]) -> None:
@@ -133,7 +140,8 @@ class VerbParser(argparse.ArgumentParser):
         if found := _MISSING.fullmatch(message):
             return f"{self.name} needs {found[1]}{self._describe_input(found[1])}."
         if found := _NOT_A_NUMBER.fullmatch(message):
-            return f"{found[1]} is {_KINDS.get(found[2], found[2])}; got {found[3]}."
+            comma = " A point stands before decimals." if "," in found[3] else ""
+            return f"{found[1]} is {_KINDS.get(found[2], found[2])}; got {found[3]}.{comma}"
         if found := _NO_VALUE.fullmatch(message):
             return f"{found[1]} needs a value, and none was given."
         if found := _A_VALUE.fullmatch(message):
@@ -148,7 +156,18 @@ class VerbParser(argparse.ArgumentParser):
         """What the first missing input is, as its help says it."""
         name = names.partition(",")[0]
         found = [each for each in self._actions if name in (each.metavar, each.dest)]
-        return f": {found[0].help}" if found and found[0].help else ""
+        told = f": {found[0].help}" if found and found[0].help else ""
+        return f"{told}.{self._find_lost_input()}".removesuffix(".")
+
+    def _find_lost_input(self) -> str:
+        """Where an input that was given may have gone."""
+        for word, after in pairwise([*self._given, ""]):
+            action = self._option_string_actions.get(word)
+            if action is not None and action.nargs == "?" and after and after[0] != "-":
+                return f" {word} has taken {after} as its own value; give the input first."
+            if action is None and word[:1] == "-" and os.path.exists(word):
+                return f" {word} begins as a flag does; give files after --, or as ./{word}."
+        return ""
 
     def _check_value(self, action: argparse.Action, value: Any) -> None:
         if action.choices is not None and value not in action.choices:

@@ -20,6 +20,11 @@ from skinnet.inference._uncertainty import (
 from skinnet.inference.indices import _find_indices
 
 
+class _Regions(dict[str, RegionSummary]):
+    def __missing__(self, name: str) -> RegionSummary:
+        raise KeyError(f"The regions are {', '.join(self) or 'none'}; got {name!r:.60}.")
+
+
 @dataclass(frozen=True, eq=False, repr=False)
 class SkinReadings(FaceMaps):
     """Maps with their means, and how certain these are."""
@@ -124,7 +129,7 @@ class SkinReadings(FaceMaps):
             True
         """
         parts = {} if self.face_parts is None else self.face_parts.regions
-        return {name: self._summarise_region(region) for name, region in parts.items()}
+        return _Regions((name, self._summarise_region(part)) for name, part in parts.items())
 
     def _summarise_region(self, region: FaceRegion) -> RegionSummary:
         box = region.patch.box

@@ -102,3 +102,5 @@ def test_without_a_face_there_are_no_parts(decomposer: Decomposer, astronaut: np
 def test_names_of_regions_are_listed_to_who_errs(decomposition: Decomposition) -> None:
     with pytest.raises(InputError, match=r"forehead, .*eyelids; got 'cheek'"):
         decomposition.region_mask("cheek")
+    with pytest.raises(KeyError, match=r"forehead, .*eyelids; got 'cheek'"):
+        decomposition.regions["cheek"]

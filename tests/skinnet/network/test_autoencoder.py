@@ -5,6 +5,7 @@ from copy import deepcopy
 import pytest
 import torch
 
+from skinnet.errors import InputError
 from skinnet.network import (
     CAMERA_MAX,
     F_BLOOD_MAX,
@@ -124,3 +125,18 @@ def test_without_a_path_the_shipped_network_is_loaded() -> None:
     model = SkinAutoencoder.from_pretrained()
     assert not model.training and model.config.working_size == 160
     assert model.trained_on.startswith("1000 ICT-FaceKit and procedural heads")
+
+
+@pytest.mark.parametrize(
+    ("photograph", "words"),
+    [
+        (torch.full((1, 3, 8, 8), 255.0), "255. Divide 8-bit values by 255"),
+        (torch.full((1, 3, 8, 8), -0.5), "-0.5"),
+        (torch.zeros(1, 8, 8, 3), r"\[1, 8, 8, 3\]"),
+    ],
+)
+def test_what_is_no_photograph_is_refused(
+    model: SkinAutoencoder, photograph: torch.Tensor, words: str
+) -> None:
+    with pytest.raises(InputError, match=words):
+        SkinAutoencoder.encode.__wrapped__(model, photograph)
