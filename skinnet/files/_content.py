@@ -6,7 +6,7 @@ from pathlib import Path
 
 from skinnet._version import __version__
 
-_PHOTOGRAPHS = "skinnet predict and skinnet edit take photographs as their input"
+_PHOTOGRAPHS = "skinnet predict and skinnet edit take photographs as the input"
 
 _STARTS = (
     (b"version https://git-lfs", "a pointer of Git LFS", "fetch the file itself: git lfs pull"),

@@ -206,10 +206,8 @@ class _Walker:
             sentence = f"holds no photographs itself, but {where}; --recursive reads them."
             self._fail(source, f"The folder {source} {sentence}")
         elif self._has_results(passed_over):
-            sentence = (
-                "holds only results of skinnet; give the photographs that they were made from."
-            )
-            self._fail(source, f"The folder {source} {sentence}")
+            sentence = f"The folder {source} holds no photographs, only results of skinnet"
+            self._fail(source, f"{sentence}; give the photographs that they were made from.")
         else:
             sentence = f"The folder {source} holds no photographs; {describe_formats()}."
             self._fail(source, sentence)

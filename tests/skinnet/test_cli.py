@@ -595,4 +595,4 @@ def test_a_folder_of_results_alone_says_so(
     folder = tmp_path / "tanned"
     assert main(["edit", str(photo), "--melanin", "1.5", "-o", f"{folder}/"]) == 0
     assert main(["edit", str(folder), "--melanin", "1.5"]) == 2
-    assert "tanned holds only results of skinnet" in capsys.readouterr().err
+    assert "tanned holds no photographs, only results of skinnet" in capsys.readouterr().err

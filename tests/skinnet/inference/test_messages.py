@@ -44,6 +44,7 @@ def test_an_interrupt_while_libraries_are_imported_says_nothing() -> None:
     code = (
         "import os, signal\n"
         "from skinnet.inference._messages import quit_at_interrupt\n"
+        "signal.signal(signal.SIGINT, signal.default_int_handler)\n"
         "with quit_at_interrupt():\n"
         "    os.kill(os.getpid(), signal.SIGINT)\n"
         "    raise ImportError('as NumPy raises')\n"
@@ -56,9 +57,13 @@ def test_an_interrupt_while_libraries_are_imported_says_nothing() -> None:
 def test_after_the_imports_an_interrupt_is_as_usual() -> None:
     from skinnet.inference._messages import quit_at_interrupt
 
-    with quit_at_interrupt():
-        pass
-    assert signal.getsignal(signal.SIGINT) is signal.default_int_handler
+    usual = signal.signal(signal.SIGINT, signal.default_int_handler)  # a job may ignore it
+    try:
+        with quit_at_interrupt():
+            pass
+        assert signal.getsignal(signal.SIGINT) is signal.default_int_handler
+    finally:
+        signal.signal(signal.SIGINT, usual)
 
 
 @posix
