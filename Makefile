@@ -3,6 +3,9 @@ PYTHON ?= $(or $(shell command -v python3.11),python3)
 BIN := .venv/bin
 READY := .venv/.ready
 
+# Compiled modules are kept: tests start many processes, and each would compile the package again.
+unexport PYTHONDONTWRITEBYTECODE
+
 .PHONY: demo test coverage test-fast test-lowest lint format bench docs runtime wheel clean
 
 demo: $(READY)

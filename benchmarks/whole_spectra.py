@@ -96,9 +96,9 @@ def _expand(skin: FittedSkin, z: Tensor, target: Tensor) -> _Expansion:
 def _expand_likelihood(skin: FittedSkin, z: Tensor, target: Tensor) -> _Expansion:
     known = ~target.isnan()
     S, later = (_load_noise(skin, z[:, 0] + shift, known) for shift in (0.0, DELTA))
-    here = _predict(skin, z)
-    unit = torch.eye(z.shape[-1], dtype=torch.float64)
-    J = torch.stack([(_predict(skin, z + DELTA * e) - here) / DELTA for e in unit], -1)
+    steps = DELTA * torch.eye(z.shape[-1] + 1, z.shape[-1], dtype=torch.float64).roll(1, 0)
+    here, *moved = _predict(skin, z + steps[:, None])
+    J = (torch.stack(moved, -1) - here[..., None]) / DELTA
     return _expand_normal(
         (target - here).nan_to_num(nan=0.0), -J * known[..., None], S, (later - S) / DELTA
     )
@@ -124,8 +124,8 @@ def _expand_normal(e: Tensor, slope: Tensor, noise: Tensor, change: Tensor) -> _
 
 
 def _predict(skin: FittedSkin, z: Tensor) -> Tensor:
-    f_mel, f_blood = z[:, 0].exp(), z[:, 1].exp()
-    nuisance = Nuisance(*z[:, 2:].unbind(-1))
+    f_mel, f_blood = z[..., :2].exp().unbind(-1)
+    nuisance = Nuisance(*z[..., 2:].unbind(-1))
     rest = skin.prior.leftover_mean(f_mel, nuisance, f_blood)
     return skin.predict(f_mel, f_blood, nuisance) + rest
 

@@ -1,5 +1,6 @@
 """Shapes are checked, hypothesis is deterministic, and tests without shared data are skipped."""
 
+import gc
 import os
 from collections.abc import Callable
 from pathlib import Path
@@ -11,7 +12,7 @@ from jaxtyping import install_import_hook
 # Tensors are small: a second thread would mostly wait, above all on a busy machine.
 os.environ.setdefault("OMP_NUM_THREADS", "1")
 # Before anything of the package is imported: the hook rewrites modules as they are loaded.
-install_import_hook("skinnet", "beartype.beartype")
+install_import_hook("skinnet", "shape_checks.check")
 
 import torch  # noqa: E402
 
@@ -24,6 +25,12 @@ settings.register_profile(
 settings.load_profile("skinnet")
 
 SHARED = Path(__file__).parents[2] / "shared" / "data"
+
+
+def pytest_collection_finish() -> None:
+    """Leave what the collected modules hold to no later garbage collection: it costs seconds."""
+    gc.collect()
+    gc.freeze()
 
 
 @pytest.fixture(scope="session")

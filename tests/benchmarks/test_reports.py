@@ -91,7 +91,7 @@ def test_the_map_of_the_lookup_has_no_equal_texels() -> None:
 
 
 def test_calibration_reports_its_figures() -> None:
-    found = calibration.measure(("all",), (0.005,), seeds=1, crowds=1, count=3000)
+    found = calibration.measure(("all",), (0.005,), seeds=1, crowds=1, count=1000)
     columns = {"trials", "error", "worst_error", "uncertainty", "covered", "refused", "seconds"}
     assert set(found["all_0.5%"]) == set(found["people"]) == columns
     assert found["trials"] == 3 and found["all_0.5%"]["error"] < 0.1

@@ -5,15 +5,11 @@ from pathlib import Path
 import numpy as np
 import pytest
 from PIL import Image
-from pipeline_scans import FAST
+from small_lightstage import PEOPLE, TEXELS, Studied, run_quickly
 
 from examples import figures, lightstage
 from examples._skin_figures import compute_colours, measure_curvature
-from skinnet.cli import main as skinnet
 from skinnet.pipeline import relight
-
-PEOPLE, TEXELS = "3", "32"
-QUICK = {"maps": FAST, "build-model": ("--appearance.samples=3",)}
 
 
 def read(path: Path) -> np.ndarray:
@@ -34,12 +30,12 @@ def test_figures_of_skin_are_drawn(tmp_path: Path) -> None:
 
 
 @pytest.mark.slow
-def test_figures_of_people_are_drawn(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_figures_of_people_are_drawn(
+    studied: Studied, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
     monkeypatch.setattr(relight, "TILE_SIZE", 48)
-    monkeypatch.setattr(
-        lightstage, "skinnet", lambda words: skinnet([*words, *QUICK.get(words[0], ())])
-    )
-    words = ["6", "7", "8", "-o", str(tmp_path / "figures"), "--lightstage", str(tmp_path / "work")]
+    monkeypatch.setattr(lightstage, "skinnet", run_quickly)
+    words = ["6", "7", "8", "-o", str(tmp_path / "figures"), "--lightstage", str(studied.folder)]
     assert figures.main([*words, "--people", PEOPLE, "--texels", TEXELS, "--dpi", "30"]) == 0
     edits, components, measures = (
         read(tmp_path / "figures" / f"figure_{number}.png") for number in (6, 7, 8)

@@ -133,10 +133,9 @@ def test_a_file_is_quantised_and_opens(
         assert target.stat().st_size < 0.4 * FILES[kind].stat().st_size
 
 
-@pytest.mark.parametrize("capture", [None, KNOWN], ids=["nothing known", "known"])
-@pytest.mark.parametrize(
-    ("way", "bound"),
-    [
+@pytest.fixture(
+    scope="module",
+    params=[
         (lambda source, target, _: halve(source, target), 0.002),
         (lambda source, target, _: quantise_dynamically(source, target), 0.1),
         (lambda source, target, _: quantise_dynamically(source, target, False), 0.1),
@@ -144,18 +143,26 @@ def test_a_file_is_quantised_and_opens(
     ],
     ids=["half", "dynamic", "dynamic uint8", "static"],
 )
-def test_a_quantised_pair_reads_nearly_the_same_pigments(
-    way: Callable[[Path, Path, Feeds], None],
-    bound: float,
-    capture: Capture | None,
+def pair(
+    request: pytest.FixtureRequest,
     feeds: dict[str, Feeds],
-    tmp_path: Path,
-) -> None:
-    model = tmp_path / "skin.small.onnx"
+    tmp_path_factory: pytest.TempPathFactory,
+) -> tuple[Path, float]:
+    """A pair that is made in one of four ways, and the error that is allowed."""
+    way, bound = request.param
+    model = tmp_path_factory.mktemp("pair") / "skin.small.onnx"
     way(SHIPPED_ENCODER, model, feeds["encoder"])
     get_decoder_path(model).write_bytes(FILES["decoder"].read_bytes())
     if bound > 0.002:
         way(FILES["decoder"], get_decoder_path(model), feeds["decoder"])
+    return model, bound
+
+
+@pytest.mark.parametrize("capture", [None, KNOWN], ids=["nothing known", "known"])
+def test_a_quantised_pair_reads_nearly_the_same_pigments(
+    pair: tuple[Path, float], capture: Capture | None
+) -> None:
+    model, bound = pair
     before, after = (
         Decomposer(path, 1)(astronaut(), detail=False, capture=capture) for path in (None, model)
     )
