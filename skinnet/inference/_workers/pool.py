@@ -18,7 +18,7 @@ from skinnet.inference._workers.outcome import Outcome
 from skinnet.inference._workers.schedule import Schedule
 from skinnet.inference._workers.worker_process import WorkerDiedError, WorkerProcess
 
-_WAITING = 4
+WAITING = 4
 """Photographs a worker that may be finished before an earlier one is; their numbers wait."""
 
 _NUMBERED = re.compile(r"(?:(?:-|_face)[1-9]\d*)+$")
@@ -71,7 +71,7 @@ class _Pool:
         one_folder: bool,
     ) -> None:
         keys = (_find_key(picture, one_folder) for picture in pictures)
-        self.schedule = Schedule(keys, _WAITING * workers)
+        self.schedule = Schedule(keys, WAITING * workers)
         self._pictures = pictures
         self._work = pickle.dumps((get_verbosity(), work))
         self._processes: set[WorkerProcess] = set()
