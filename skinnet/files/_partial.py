@@ -6,7 +6,7 @@ import socket
 import threading
 import time
 import zlib
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterable, Iterator
 from contextlib import contextmanager, suppress
 from pathlib import Path
 from secrets import token_hex
@@ -93,6 +93,36 @@ def take_removed() -> list[Path]:
     return taken
 
 
+def add_removed(paths: Iterable[Path]) -> None:
+    """Add partial files that another process of the same run has removed."""
+    _removed.extend(paths)
+
+
+@contextmanager
+def write_aside(folder: Path) -> Iterator[Callable[[str], Path]]:
+    """Write files of a folder before it is known what they are called.
+
+    Args:
+        folder: The folder.
+
+    Yields:
+        A function from a suffix, such as `.png`, to a temporary path in the folder. What has not
+        been renamed at the end is removed.
+    """
+    parts: list[Path] = []
+
+    def name_temporary(suffix: str) -> Path:
+        _sweep(folder.absolute())
+        parts.append(_name_beside(folder / f"a{suffix}", "part"))
+        return parts[-1]
+
+    try:
+        yield name_temporary
+    finally:
+        for part in parts:
+            part.unlink(missing_ok=True)
+
+
 def _name_beside(path: Path, kind: str) -> Path:
     name = f".skinnet-{_HOST}-{os.getpid()}-{token_hex(6)}.{kind}{path.suffix}"
     _own.add(name)
@@ -106,9 +136,10 @@ def _sweep(folder: Path) -> None:
             return
         _looked_at.add(folder)
         for entry in os.scandir(folder):
-            if entry.name not in _own and _is_abandoned(entry):
-                os.unlink(entry.path)
-                _removed.append(Path(entry.path))
+            with suppress(FileNotFoundError):  # another process has removed it
+                if entry.name not in _own and _is_abandoned(entry):
+                    os.unlink(entry.path)
+                    _removed.append(Path(entry.path))
 
 
 def _is_abandoned(entry: "os.DirEntry[str]") -> bool:

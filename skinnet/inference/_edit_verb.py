@@ -16,7 +16,6 @@ from skinnet._version import __version__
 from skinnet.errors import InputError
 from skinnet.images._kind import Kind
 from skinnet.images._mark import EDITED, Mark
-from skinnet.images._result_names import lock_folder
 from skinnet.images._walk import Found, PassedOver, Walk, walk
 from skinnet.images._write import check_quality, find_format, write_picture
 from skinnet.inference._edit_mask import read_edit_mask
@@ -26,7 +25,7 @@ from skinnet.inference._face_choice import check_choice
 from skinnet.inference._input_run import NotWrittenError, describe_totals, is_one_file, run_over
 from skinnet.inference._messages import explain, note, print_line, report
 from skinnet.inference._own_results import Source
-from skinnet.inference._photo_verbs import _make_decomposer, _read
+from skinnet.inference._photo_verbs import _keep_names, _open_networks, _prepare, _read
 from skinnet.inference._pigment_edit import check_factors
 from skinnet.inference._told_capture import ToldCapture
 from skinnet.inference.decomposer import Decomposer
@@ -49,7 +48,11 @@ class _EditRun:
         """Factors by pigment."""
         return {"melanin": self.options.melanin, "hemoglobin": self.options.hemoglobin}
 
-    def edit_one(self, found: Found) -> int:
+    def load(self) -> None:
+        """Open the networks."""
+        _open_networks(self.decomposer, self.options)
+
+    def __call__(self, found: Found) -> int:
         """Edit a photograph, write it, and print what was written. Returns the number of faces."""
         source, picture, notes = _read(found)
         known, told_notes = self.told.tell(picture)
@@ -87,7 +90,7 @@ class _EditRun:
         mark, quality = Mark("edit", EDITED, source.digest), self.options.quality
         if self.place.kind is not Output.PIPE:
             place = self.place.make_folder(source)
-            with lock_folder(place):
+            with _keep_names(place):
                 target, numbered = self.place.choose_target(source, suffix, place)
                 losses = write_picture(target, edited.picture, mark, quality)
             return target, (*numbered, *losses)
@@ -143,13 +146,18 @@ def edit(options: argparse.Namespace) -> bool:
     found = walk(options.input, options.recursive)
     _pass_over_mask(found, options)
     place = EditPlace.from_options(options.output, options.format, found, options.input)
-    decomposer = _make_decomposer(options)
-    decomposer.load()
+    workers, decomposer = _prepare(options, found)
     told = ToldCapture.from_options(options, decomposer, len(found.pictures))
     if mask is not None and len(found.pictures) > 1:
         note(f"{options.mask} is the mask of all {len(found.pictures)} photographs.")
-    run = _EditRun(decomposer, options, told, place, mask)
-    totals = run_over(found, run.edit_one, lambda _, error: report(error), options.json)
+    totals = run_over(
+        found,
+        _EditRun(decomposer, options, told, place, mask),
+        lambda _, error: report(error),
+        options.json,
+        workers=workers,
+        one_folder=place.path is not None,
+    )
     for sentence in found.notes:
         note(sentence)
     if not is_one_file(found, options.input):

@@ -2,12 +2,16 @@
 
 import time
 from collections import Counter
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
 from dataclasses import dataclass, field
+from functools import partial
+from typing import Any
 
 from skinnet.errors import InputError, NoFaceError
 from skinnet.images._walk import STDIN, Found, Walk
 from skinnet.inference._progress import show_progress
+from skinnet.inference._workers.pool import open_pool
 
 _FACELESS, _UNWRITTEN, _UNREADABLE = "without a face", "could not be written", "could not be read"
 """Why an input failed, as the sentence at the end of a run says it."""
@@ -36,41 +40,73 @@ class Totals:
 
 def run_over(
     found: Walk,
-    work: Callable[[Found], int],
+    work: Callable[[Found], Any],
     fail: Callable[[str, Exception], None],
     quiet: bool = False,
+    *,
+    take: Callable[[Any], int] = int,
+    workers: int = 1,
+    one_folder: bool = False,
 ) -> Totals:
     """Do the work on every input, with a bar on a terminal.
 
+    What is printed, taken and counted comes in the order of the inputs, whatever the number of
+    workers.
+
     Args:
         found: The inputs.
-        work: What to do with one; it returns the number of faces, and raises `InputError` or
-            `OSError` if the input cannot be used.
+        work: What to do with one; it raises `InputError` or `OSError` if the input cannot be used.
+            For several workers it is a `Work`.
         fail: Called with the name of an input that failed and with the error, to print it.
         quiet: Whether to show no progress.
+        take: Takes what the work returned, and returns the number of faces; by default it is that
+            number. It raises what the work may raise.
+        workers: Number of processes that do the work; 1 is this one.
+        one_folder: Whether all results are in one folder, and not beside their inputs.
 
     Returns:
         What has become of the inputs.
     """
     totals, start = Totals(), time.monotonic()
-    with show_progress(len(found.pictures), quiet) as advance:
+    with (
+        show_progress(len(found.pictures), quiet) as advance,
+        _open_work(found, work, workers, one_folder) as get,
+    ):
         for picture in found.pictures:
-            _do_one(picture, work, fail, totals)
+            _do_one(picture, get(picture), take, fail, totals)
             advance(totals.failures.total())
     totals.seconds = time.monotonic() - start
     return totals
 
 
+@contextmanager
+def _open_work(
+    found: Walk, work: Callable[[Found], Any], workers: int, one_folder: bool
+) -> Iterator[Callable[[Found], Callable[[], Any]]]:
+    """Yield a function from an input to one that does it, or that gives what a worker made of it.
+
+    Errors of the workers themselves are raised by the first one, and end the run.
+    """
+    if workers == 1:
+        yield lambda picture: partial(work, picture)
+        return
+    pictures = [picture for picture in found.pictures if picture.error is None]
+    places = iter(range(len(pictures)))
+    with open_pool(work, pictures, workers, one_folder) as wait:
+        yield lambda picture: wait(next(places)).replay if picture.error is None else int
+
+
 def _do_one(
     picture: Found,
-    work: Callable[[Found], int],
+    work: Callable[[], Any],
+    take: Callable[[Any], int],
     fail: Callable[[str, Exception], None],
     totals: Totals,
 ) -> None:
     try:
         if picture.error is not None:
             raise picture.error
-        totals.faces += work(picture)
+        totals.faces += take(work())
         totals.photographs += 1
     except BrokenPipeError:
         raise

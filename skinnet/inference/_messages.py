@@ -5,9 +5,10 @@ import re
 import signal
 import sys
 import threading
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from contextlib import contextmanager
 from enum import IntEnum
+from typing import NamedTuple
 
 from skinnet.errors import _explain_fault
 from skinnet.files._partial import take_removed
@@ -84,9 +85,46 @@ def get_verbosity() -> Verbosity:
     return _level
 
 
+class Line(NamedTuple):
+    """A line that is to be printed: its text, and whether it is a result."""
+
+    text: str
+    is_result: bool
+
+
+_recorded: list[Line] | None = None
+
+
+@contextmanager
+def record_lines() -> Iterator[list[Line]]:
+    """Keep lines instead of printing them, so that another process prints them.
+
+    Yields:
+        The lines so far.
+    """
+    global _recorded
+    _recorded = []
+    try:
+        yield _recorded
+    finally:
+        _recorded = None
+
+
+def print_recorded(lines: Iterable[Line]) -> None:
+    """Print lines that were kept, each where it belongs."""
+    for text, is_result in lines:
+        if is_result:
+            print_line(text)
+        else:
+            _print_error(text)
+
+
 def print_line(text: str) -> None:
     """Print a result: what was asked for."""
-    print(_escape(text, sys.stdout.encoding), flush=True)
+    if _recorded is not None:
+        _recorded.append(Line(text, True))
+    else:
+        print(_escape(text, sys.stdout.encoding), flush=True)
 
 
 def note(sentence: str, program: str = "skinnet") -> None:
@@ -128,7 +166,10 @@ def describe(error: Exception) -> str:
 
 
 def _print_error(line: str) -> None:
-    print(_escape(line, sys.stderr.encoding), file=sys.stderr, flush=True)
+    if _recorded is not None:
+        _recorded.append(Line(line, False))
+    else:
+        print(_escape(line, sys.stderr.encoding), file=sys.stderr, flush=True)
 
 
 def _make_line(sentence: str) -> str:

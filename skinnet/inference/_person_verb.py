@@ -46,7 +46,6 @@ def person(options: argparse.Namespace) -> bool:
     """Read shots of one person and fuse them. Returns whether all could be used."""
     _check_faces(options.faces)
     decomposer = _make_decomposer(options)
-    decomposer.load()
     found = walk(options.input, options.recursive)
     told = ToldCapture.from_options(options, decomposer, len(found.pictures))
     read, totals = _read_shots(decomposer, found, options, told)

@@ -4,10 +4,12 @@ import argparse
 import hashlib
 import json
 import sys
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
+from contextlib import contextmanager
+from dataclasses import dataclass
 from io import BytesIO
 from pathlib import Path
-from typing import Any
+from typing import Any, NamedTuple
 
 from skinnet.errors import InputError
 from skinnet.files._reading import read_stream
@@ -26,36 +28,85 @@ from skinnet.inference._input_run import (
     name_input,
     run_over,
 )
-from skinnet.inference._messages import describe, note, print_line, report
+from skinnet.inference._messages import describe, explain, note, print_line, report
 from skinnet.inference._own_results import Source, choose_result_stem
-from skinnet.inference._report.html_report import NAME, FaceReport
+from skinnet.inference._report.html_report import NAME, FaceReport, make_rows
 from skinnet.inference._told_capture import ToldCapture
 from skinnet.inference._usual_values import describe_reading
+from skinnet.inference._workers.turns import wait_turn
+from skinnet.inference._workers.worker_count import choose_count, count_cores
 from skinnet.inference.decomposer import Decomposer
 from skinnet.inference.decomposition import Decomposition
 from skinnet.inference.results import (
     _describe_map_files,
     _list_all_ends,
+    _list_ends,
     _make_folder,
+    _name_files,
     _name_part,
     _Result,
-    _write_all,
+    _write_pictures,
 )
+
+
+class _Done(NamedTuple):
+    """What is known of a photograph that was decomposed: for the totals, the table and the page."""
+
+    faces: int
+    summaries: list[dict[str, Any]]
+    rows: list[str]
+
+
+@dataclass(frozen=True)
+class _PredictRun:
+    """What all photographs of a run share; a worker process has a copy of it."""
+
+    decomposer: Decomposer
+    options: argparse.Namespace
+    told: ToldCapture
+    page: Path | None
+
+    def load(self) -> None:
+        """Open the networks."""
+        _open_networks(self.decomposer, self.options)
+
+    def __call__(self, found: Found) -> _Done:
+        """Decompose a picture, write its results, and print them."""
+        source, picture, notes = _read(found)
+        known, told_notes = self.told.tell(picture)
+        decompositions = self.decomposer(
+            picture,
+            name=source.name,
+            detail=self.options.detail,
+            faces=self.options.faces,
+            region=self.options.region,
+            capture=known,
+        )
+        try:
+            every = (*notes, *told_notes)
+            results, folder = _write(source, picture, decompositions, every, self.options)
+        except InputError as error:
+            raise NotWrittenError(str(error)) from error
+        rows = [] if self.page is None else make_rows(picture.srgb, results, folder, self.page)
+        faces = sum(each.face_id is not None for each in decompositions)
+        return _Done(faces, [] if self.options.csv is None else [*_list(results)], rows)
 
 
 def predict(options: argparse.Namespace) -> bool:
     """Decompose every input; report bad inputs and continue. Returns whether none was bad."""
     check_choice(options.faces)
-    decomposer = _make_decomposer(options)
-    decomposer.load()
     found = walk(options.input, options.recursive)
+    workers, decomposer = _prepare(options, found)
     told = ToldCapture.from_options(options, decomposer, len(found.pictures))
     table, page = FaceTable(options.csv), FaceReport(_choose_report(options, found))
     totals = run_over(
         found,
-        lambda picture: _predict_one(decomposer, picture, options, told, table, page),
+        _PredictRun(decomposer, options, told, page.path),
         lambda name, error: _report_failure(table, page, name, error),
         quiet=options.json,
+        take=lambda done: _take(done, table, page),
+        workers=workers,
+        one_folder=options.output is not None,
     )
     for sentence in (*found.notes, *table.notes):
         note(sentence)
@@ -64,6 +115,16 @@ def predict(options: argparse.Namespace) -> bool:
     if not is_one_file(found, options.input):
         note(total if page.path is None else f"{total} The report is {page.path}.")
     return not totals.failures
+
+
+def _take(done: _Done, table: FaceTable, page: FaceReport) -> int:
+    """Add a photograph to the table and the page. Returns the number of its faces."""
+    try:
+        table.add(done.summaries)
+        page.add_rows(done.rows)
+    except InputError as error:
+        raise NotWrittenError(str(error)) from error
+    return done.faces
 
 
 def _choose_report(options: argparse.Namespace, found: Walk) -> Path | None:
@@ -85,38 +146,31 @@ def _describe_place(found: Walk, output: Path | None) -> str:
 
 
 def _make_decomposer(options: argparse.Namespace) -> Decomposer:
-    """Make the decomposer that is asked for, and begin to open what finds faces."""
+    """Make the decomposer that is asked for, and open its networks."""
+    decomposer = Decomposer(options.model, providers=options.provider)
+    _open_networks(decomposer, options)
+    return decomposer
+
+
+def _open_networks(decomposer: Decomposer, options: argparse.Namespace) -> None:
     if options.region == "face":
         open_ahead()
-    return Decomposer(options.model, providers=options.provider)
+    decomposer.load()
 
 
-def _predict_one(
-    decomposer: Decomposer,
-    found: Found,
-    options: argparse.Namespace,
-    told: ToldCapture,
-    table: FaceTable,
-    page: FaceReport,
-) -> int:
-    """Decompose a picture, and write its results. Returns the number of faces in them."""
-    source, picture, notes = _read(found)
-    known, told_notes = told.tell(picture)
-    decompositions = decomposer(
-        picture,
-        name=source.name,
-        detail=options.detail,
-        faces=options.faces,
-        region=options.region,
-        capture=known,
-    )
-    try:
-        results, folder = _write(source, picture, decompositions, (*notes, *told_notes), options)
-        table.add(result.summary for result in results)
-        page.add(picture.srgb, results, folder)
-    except InputError as error:
-        raise NotWrittenError(str(error)) from error
-    return sum(each.face_id is not None for each in decompositions)
+def _prepare(options: argparse.Namespace, found: Walk) -> tuple[int, Decomposer]:
+    """Choose the number of workers, and make the decomposer that each of them has.
+
+    Raises:
+        InputError: A number or a model is wrong.
+    """
+    workers = choose_count(options.workers, found.pictures, options.provider)
+    decomposer = _make_decomposer(options)
+    if workers == 1:
+        return 1, decomposer
+    explain(f"{workers} processes read the photographs.")
+    threads = max(1, count_cores() // workers)
+    return workers, Decomposer(options.model, threads, options.provider)
 
 
 def _report_failure(table: FaceTable, page: FaceReport, name: str, error: Exception) -> None:
@@ -141,11 +195,12 @@ def _write(
     Returns:
         What was written, and where.
     """
-    folder = _make_folder(options.output or source.folder / OUTPUT)
-    with lock_folder(folder):
-        stem = choose_result_stem(
-            folder, source, _list_all_ends(decompositions, options.colour_maps)
-        )
+    folder, maps = _make_folder(options.output or source.folder / OUTPUT), options.colour_maps
+    with (
+        _write_pictures(folder, decompositions, picture.srgb, source.digest, maps) as pictures,
+        _keep_names(folder),
+    ):
+        stem = choose_result_stem(folder, source, _list_all_ends(decompositions, maps))
         if stem != source.stem:
             others = f"{folder} holds other files of the name {source.stem}"
             notes = (*notes, f"{others}; the results of {source.name} are numbered: {stem}.")
@@ -153,14 +208,26 @@ def _write(
         for each in decompositions:
             summary = {"file": source.name, "input": source.describe(folder)} | each.to_dict()
             summary["notes"] = [*notes, *summary["notes"]]
-            summary["map_files"] = _describe_map_files(options.colour_maps)
+            summary["map_files"] = _describe_map_files(maps)
             results.append(_Result(stem + _name_part(each, len(decompositions)), each, summary))
-        count = _write_all(folder, results, picture.srgb, source.digest, options.colour_maps)
-    for sentence in dict.fromkeys(each for _, _, summary in results for each in summary["notes"]):
+        _name_files(folder, results, pictures)
+    for sentence in dict.fromkeys(each for summary in _list(results) for each in summary["notes"]):
         note(sentence)
     for result in results:
-        _print(source, folder, result, count, options.json)
+        _print(source, folder, result, len(_list_ends(maps)), options.json)
     return results, folder
+
+
+@contextmanager
+def _keep_names(folder: Path) -> Iterator[None]:
+    """Keep all other photographs from choosing names in a folder; earlier ones have theirs."""
+    wait_turn()
+    with lock_folder(folder):
+        yield
+
+
+def _list(results: Sequence[_Result]) -> Iterator[dict[str, Any]]:
+    return (result.summary for result in results)
 
 
 def _print(source: Source, folder: Path, result: _Result, count: int, as_json: bool) -> None:

@@ -2,9 +2,11 @@
 
 import json
 import math
+import os
 import re
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from concurrent.futures import ThreadPoolExecutor
+from contextlib import contextmanager
 from functools import partial
 from pathlib import Path
 from typing import Any, NamedTuple
@@ -14,6 +16,7 @@ from numpy.typing import NDArray
 
 from skinnet.errors import InputError, _explain_fault
 from skinnet.files import write_text, write_together
+from skinnet.files._partial import write_aside
 from skinnet.images._arguments import check_path, check_photo
 from skinnet.images._mark import Mark
 from skinnet.images._png_file import write_png
@@ -26,7 +29,7 @@ from skinnet.inference._colour_maps import (
 from skinnet.inference.decomposition import MAP_FILES, SKIN_THRESHOLD, Decomposition
 from skinnet.inference.panel import draw_panel
 
-_LEVELS = 65535
+_LEVELS, _SUMMARY = 65535, ".json"
 
 _WRITERS, _STRIP = 2, 256
 """Files that are compressed at once, and rows that are quantised at once; both bound the memory."""
@@ -102,50 +105,84 @@ def _write_all(
 ) -> int:
     """Write the results of a photograph, all or none. Returns the number of files of each."""
     _make_folder(folder)
-    try:
-        with write_together() as temporary:
-            for result in results:
-                _write_result(folder, result, photo, digest, colour_maps, temporary)
-    except OSError as error:
-        raise _describe_fault(folder, error) from error
+    decompositions = [result.decomposition for result in results]
+    with _write_pictures(folder, decompositions, photo, digest, colour_maps) as pictures:
+        _name_files(folder, results, pictures)
     return len(_list_ends(colour_maps))
 
 
-def _write_result(
+@contextmanager
+def _write_pictures(
     folder: Path,
-    result: _Result,
+    decompositions: Sequence[Decomposition],
     photo: NDArray[np.uint8],
     digest: str,
     colour_maps: ColourMaps,
-    temporary: Callable[[Path], Path],
-) -> None:
-    stem, decomposition, summary = result
+) -> Iterator[list[dict[str, Path]]]:
+    """Write the pictures of a photograph under temporary names.
+
+    They take the most time of what is written, and are the same whatever the photograph's results
+    are called.
+
+    Yields:
+        For each decomposition the temporary paths by the ends of the names, such as `_panel.png`;
+        those that are not renamed are removed at the end.
+    """
+    with write_aside(folder) as temporary:
+        try:
+            pictures = [
+                _write_faces_pictures(each, photo, digest, colour_maps, temporary)
+                for each in decompositions
+            ]
+        except OSError as error:
+            raise _describe_fault(folder, error) from error
+        yield pictures
+
+
+def _write_faces_pictures(
+    decomposition: Decomposition,
+    photo: NDArray[np.uint8],
+    digest: str,
+    colour_maps: ColourMaps,
+    temporary: Callable[[str], Path],
+) -> dict[str, Path]:
+    parts = {end: temporary(".png") for end in _list_ends(colour_maps) if end != _SUMMARY}
     pictures = {
         "reconstruction": decomposition.reconstruction,
         "panel": draw_panel(photo, decomposition),
     }
-    paths = {name: temporary(folder / f"{stem}_{name}.png") for name in (*pictures, *MAP_FILES)}
     jobs = [
-        partial(write_png, paths[name], picture, Mark("predict", name, digest).to_text())
+        partial(write_png, parts[f"_{name}.png"], picture, Mark("predict", name, digest).to_text())
         for name, picture in pictures.items()
-    ] + [
-        partial(_write_map, paths[name], name, decomposition, Mark("predict", "map", digest))
-        for name in MAP_FILES
+    ]
+    mark = Mark("predict", "map", digest)
+    jobs += [
+        partial(_write_map, parts[f"_{name}.png"], name, decomposition, mark) for name in MAP_FILES
     ]
     jobs += [
-        partial(
-            write_colour_map,
-            temporary(folder / f"{stem}_{name}_colour.png"),
-            *(name, decomposition, digest),
-        )
+        partial(write_colour_map, parts[f"_{name}_colour.png"], name, decomposition, digest)
         for name in list_colour_maps(colour_maps)
     ]
     with ThreadPoolExecutor(_WRITERS) as pool:
         for job in [pool.submit(job) for job in jobs]:
             job.result()
-    record = json.dumps(summary, indent=2, allow_nan=False)
-    record = _PAIR_ON_LINES.sub(r"[\1, \2]", record)
-    write_text(temporary(folder / f"{stem}.json"), record + "\n")
+    return parts
+
+
+def _name_files(
+    folder: Path, results: Sequence[_Result], pictures: Sequence[dict[str, Path]]
+) -> None:
+    """Give the pictures of a photograph their names, and write its summaries, all or none."""
+    try:
+        with write_together() as temporary:
+            for (stem, _, summary), parts in zip(results, pictures, strict=True):
+                for end, part in parts.items():
+                    os.replace(part, temporary(folder / f"{stem}{end}"))
+                record = json.dumps(summary, indent=2, allow_nan=False)
+                record = _PAIR_ON_LINES.sub(r"[\1, \2]", record)
+                write_text(temporary(folder / f"{stem}{_SUMMARY}"), record + "\n")
+    except OSError as error:
+        raise _describe_fault(folder, error) from error
 
 
 def _make_folder(folder: Path) -> Path:
@@ -183,7 +220,7 @@ def _list_ends(colour_maps: ColourMaps) -> list[str]:
     """List the ends of the names of the files that `write_results` writes."""
     coloured = (f"{name}_colour" for name in list_colour_maps(colour_maps))
     names = ("panel", "reconstruction", *MAP_FILES, *coloured)
-    return [*(f"_{name}.png" for name in names), ".json"]
+    return [*(f"_{name}.png" for name in names), _SUMMARY]
 
 
 def _describe_map_files(colour_maps: ColourMaps) -> dict[str, Any]:

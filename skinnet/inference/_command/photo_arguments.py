@@ -51,6 +51,7 @@ def add_predict(verb: argparse.ArgumentParser) -> None:
         "pigments by default; all adds shading and specular reflection",
     )
     add_common(verb)
+    _add_workers(verb)
 
 
 def add_edit(verb: argparse.ArgumentParser) -> None:
@@ -95,6 +96,17 @@ def add_edit(verb: argparse.ArgumentParser) -> None:
     )
     add_json(verb, "a summary of each edit")
     add_common(verb)
+    _add_workers(verb)
+
+
+def _add_workers(verb: argparse.ArgumentParser) -> None:
+    verb.add_argument(
+        "--workers",
+        type=int,
+        metavar="N",
+        help="processes that share the photographs; by default one for each core, and fewer for "
+        "few photographs or little memory; the results are the same",
+    )
 
 
 def _name_format(word: str) -> str:

@@ -3,7 +3,7 @@
 import os
 import shutil
 from base64 import b64encode
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from hashlib import sha256
 from html import escape
 from importlib.resources import files
@@ -56,19 +56,15 @@ class FaceReport:
             _check_path(path)
             self._rows = SpooledTemporaryFile(_IN_MEMORY)  # closed by finish
 
-    def add(self, photo: NDArray[np.uint8], results: Sequence[_Result], folder: Path) -> None:
-        """Add the faces of a photograph.
+    def add_rows(self, rows: Iterable[str]) -> None:
+        """Add the rows of a photograph, which `make_rows` makes.
 
-        Args:
-            photo: The photograph, uint8 sRGB [H, W, 3].
-            results: What was read and written.
-            folder: Where it was written.
+        Raises:
+            InputError: There is no room for them.
         """
-        if self._rows is None or self.path is None:
+        if self._rows is None:
             return
-        for stem, decomposition, summary in results:
-            panel = folder / f"{stem}_panel.png"
-            row = make_row(photo, decomposition, summary, panel, self.path.parent)
+        for row in rows:
             try:
                 self._rows.write(row.encode("utf-8"))
             except OSError as error:
@@ -130,6 +126,26 @@ class FaceReport:
             "photographs are in this page: whoever has it sees them.</small></p>\n</main>\n"
             f"<script>{_SCRIPT}</script>\n</body>\n</html>\n"
         )
+
+
+def make_rows(
+    photo: NDArray[np.uint8], results: Sequence[_Result], folder: Path, page: Path
+) -> list[str]:
+    """Make a row of a report for each face of a photograph.
+
+    Args:
+        photo: The photograph, uint8 sRGB [H, W, 3].
+        results: What was read and written.
+        folder: Where it was written.
+        page: The page.
+
+    Returns:
+        Elements `tr`.
+    """
+    return [
+        make_row(photo, each, summary, folder / f"{stem}_panel.png", page.parent)
+        for stem, each, summary in results
+    ]
 
 
 def _check_path(path: Path) -> None:

@@ -1,0 +1,1 @@
+"""Processes that do the photographs of a run side by side, with the results of one process."""
