@@ -3,7 +3,7 @@ PYTHON ?= $(or $(shell command -v python3.11),python3)
 BIN := .venv/bin
 READY := .venv/.ready
 
-.PHONY: demo test coverage test-fast test-lowest lint format bench docs runtime wheel clean
+.PHONY: demo test coverage test-fast test-lowest lint format bench docs runtime wheel audit clean
 
 demo: $(READY)
 	$(BIN)/python -m train fit --config configs/quick.yaml
@@ -64,8 +64,16 @@ docs: $(READY)
 runtime: $(READY)
 	@$(BIN)/python -m tools.web_runtime || true
 
+# The bill of materials lies beside the wheel, and in its folder .dist-info/sboms.
 wheel: $(READY) runtime
+	rm -rf build/bill
+	$(BIN)/python -m tools.bill_of_materials build/bill
 	$(BIN)/python -m build --wheel
+	cp build/bill/*.cdx.json dist
+
+# Known vulnerabilities of the tested versions; skipped in a sentence where no database answers.
+audit: $(READY)
+	$(BIN)/python -m tools.audit
 
 clean:
 	rm -rf .venv .venv-lowest build dist
