@@ -4,7 +4,7 @@ import os
 import sys
 import time
 import traceback
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from importlib import import_module
 from typing import Any
 
@@ -32,6 +32,7 @@ from skinnet.inference._messages import (
     report,
     set_verbosity,
 )
+from skinnet.material._verbs import MATERIAL_VERBS
 from skinnet.pipeline._flag_table import check_flags, make_parser
 from skinnet.pipeline._verbs import PIPELINE_VERBS
 
@@ -39,12 +40,23 @@ _OK, _BROKEN_PIPE, _BAD_INPUT, _FAULT, _INTERRUPTED = 0, 1, 2, 70, 130
 """Exit codes; the second is for an output pipe whose reader has closed it."""
 
 _COMPLETION = "completion"
+
+
+def _summarise(verbs: Mapping[str, Any]) -> dict[str, str]:
+    """What each verb does."""
+    return {name: verb.summary for name, verb in verbs.items()}
+
+
 _VERBS = {
-    **{name: verb.summary for name, verb in PHOTO_VERBS.items()},
-    **{name: verb.summary for name, verb in PIPELINE_VERBS.items()},
+    **_summarise(PHOTO_VERBS),
+    **_summarise(MATERIAL_VERBS),
+    **_summarise(PIPELINE_VERBS),
     _COMPLETION: completion.SUMMARY,
 }
 """All verbs, and what each does."""
+
+_OF_PICTURES = {**PHOTO_VERBS, **MATERIAL_VERBS}
+"""Verbs whose flags argparse reads."""
 
 _LEADING = ("-h", "--help", "--version", "-q", "--quiet", "-v", "--verbose")
 """Flags that may stand before the verb."""
@@ -94,7 +106,7 @@ def _run(arguments: list[str]) -> int:
     if verb == "help":
         verb, rest = (rest[0], ["--help"]) if rest else ("", [])
     if not verb:
-        print_line(describe_verbs({name: verb.summary for name, verb in PIPELINE_VERBS.items()}))
+        print_line(describe_verbs(_summarise(PIPELINE_VERBS), _summarise(MATERIAL_VERBS)))
         return _OK
     started = time.perf_counter()
     code = _run_verb(verb, [*flags, *rest])
@@ -159,7 +171,7 @@ def _make_parser(verb: str) -> VerbParser:
         description = f"{completion.SUMMARY[0].upper()}{completion.SUMMARY[1:]}."
         add, examples = completion.add_completion, completion.EXAMPLES
         return VerbParser(f"skinnet {verb}", description, examples, add)
-    each = PHOTO_VERBS[verb]
+    each = _OF_PICTURES[verb]
     return VerbParser(f"skinnet {verb}", each.description, each.examples, each.add)
 
 
@@ -169,10 +181,15 @@ def _make_parsers() -> dict[str, tuple[str, VerbParser]]:
 
 
 def _run_photo_verb(verb: str, options: Any) -> int:
-    each = PHOTO_VERBS[verb]
+    each = _OF_PICTURES[verb]
     module, _, name = each.run.partition(":")
-    run: Any = getattr(import_module(module), name)
-    return _BAD_INPUT if run(options) is False else _OK
+    try:
+        run: Any = getattr(import_module(module), name)
+        return _BAD_INPUT if run(options) is False else _OK
+    except ModuleNotFoundError as error:
+        if verb not in MATERIAL_VERBS:
+            raise
+        raise _explain_missing(error, "torch", f"skinnet {verb}") from error
 
 
 def _wants_help(arguments: list[str]) -> bool:

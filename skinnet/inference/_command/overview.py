@@ -13,7 +13,7 @@ Melanin and hemoglobin maps of a photograph of skin.
 verbs of photographs:
 {photographs}
 
-verbs of scans:
+{textures}verbs of scans:
 {scans}
 
 more verbs:
@@ -36,17 +36,23 @@ examples:
 _MORE = {"completion": completion.SUMMARY, "help VERB": "show the flags of a verb"}
 
 
-def describe_verbs(scans: Mapping[str, str]) -> str:
+def describe_verbs(scans: Mapping[str, str], textures: Mapping[str, str]) -> str:
     """Describe the command and all its verbs.
 
     Args:
         scans: The verbs of the classic pipeline, and what each does.
+        textures: The verbs of textures and materials, and what each does.
 
     Returns:
         The help of `skinnet`.
     """
     photographs = {name: verb.summary for name, verb in PHOTO_VERBS.items()}
-    return _TEXT.format(photographs=_list(photographs), scans=_list(scans), more=_list(_MORE))
+    return _TEXT.format(
+        photographs=_list(photographs),
+        textures=f"verbs of textures:\n{_list(textures)}\n\n" if textures else "",
+        scans=_list(scans),
+        more=_list(_MORE),
+    )
 
 
 def _list(verbs: Mapping[str, str]) -> str:
