@@ -51,9 +51,7 @@ class BloodResponse:
         white: w of each region, relative to green, [regions, 3].
     """
 
-    def __init__(
-        self, colours: ColourTable, rest: RestingMaps, regions: NDArray[np.bool_]
-    ) -> None:
+    def __init__(self, colours: ColourTable, rest: RestingMaps, regions: NDArray[np.bool_]) -> None:
         self.nodes = np.linspace(-_RANGE, _RANGE, _NODES)
         curves = np.stack([_trace(colours, rest, mask, self.nodes) for mask in regions])
         middle = curves[:, _NODES // 2, None]
@@ -106,9 +104,7 @@ class BloodResponse:
         return low + share * (high - low), slope
 
 
-def _trace(
-    colours: ColourTable, rest: RestingMaps, mask: NDArray[np.bool_], nodes: Array
-) -> Array:
+def _trace(colours: ColourTable, rest: RestingMaps, mask: NDArray[np.bool_], nodes: Array) -> Array:
     """Mean colour of a region's texels at log changes of hemoglobin, [nodes, 3]."""
     chosen = mask & rest.skin if (mask & rest.skin).any() else mask
     if not chosen.any():

@@ -77,15 +77,13 @@ class EventFinder:
         elif time - self._since >= _SUSTAIN:
             kind = "flush" if self._smooth > 0 else "blanching"
             onset = self._find_onset(least)
-            self._event = Event(
-                kind, self.region, self._shot, onset, time, None, self._smooth, sd
-            )
+            self._event = Event(kind, self.region, self._shot, onset, time, None, self._smooth, sd)
         return None
 
     def _update(self, time: float, change: float) -> None:
         share = 1.0 if np.isnan(self._smooth) else 1 - np.exp(-(time - self._time) / _SMOOTH)
-        self._smooth = change if np.isnan(self._smooth) else (
-            self._smooth + share * (change - self._smooth)
+        self._smooth = (
+            change if np.isnan(self._smooth) else (self._smooth + share * (change - self._smooth))
         )
         self._time = time
         self._trail.append((time, self._smooth))

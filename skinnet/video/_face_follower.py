@@ -91,7 +91,9 @@ class FaceFollower:
         self._place = place_face(face.landmarks)
         return face.landmarks
 
-    def _smooth(self, points: NDArray[np.float64], time: float) -> tuple[NDArray[np.float64], float]:
+    def _smooth(
+        self, points: NDArray[np.float64], time: float
+    ) -> tuple[NDArray[np.float64], float]:
         """Smooth what bends over time, and leave what moves, turns and stretches."""
         if self._rest is None:
             self._rest = points

@@ -27,6 +27,7 @@ class Reading(NamedTuple):
         ratios: Log ratio of linear RGB to the baseline, [regions, 3].
         texture: Log change over the face's texture, float32 [size, size]; None if not asked for.
         direction: Derivative of the face's log RGB by log hemoglobin at rest, [3].
+        resting: Hemoglobin over the texture at rest, float32 [size, size]; None without `texture`.
     """
 
     number: int
@@ -41,6 +42,7 @@ class Reading(NamedTuple):
     ratios: Array
     texture: NDArray[np.float32] | None = None
     direction: Array | None = None
+    resting: NDArray[np.float32] | None = None
 
 
 def make_blank(number: int, time: float, shot: int, state: str, regions: int) -> Reading:

@@ -102,9 +102,9 @@ def _place_in_box(
 
     assert isinstance(box, Box)
     scale = np.array([shape[1] / box.width, shape[0] / box.height])
-    placed: NDArray[np.float32] = (
-        (space.place(landmarks) - (box.left, box.top)) * scale
-    ).astype(np.float32)
+    placed: NDArray[np.float32] = ((space.place(landmarks) - (box.left, box.top)) * scale).astype(
+        np.float32
+    )
     return placed
 
 

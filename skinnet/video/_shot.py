@@ -118,9 +118,7 @@ class Shot:
         assert self._space is not None
         return self._space
 
-    def _sample(
-        self, frame: NDArray[np.uint8], followed: Followed
-    ) -> NDArray[np.float32] | None:
+    def _sample(self, frame: NDArray[np.uint8], followed: Followed) -> NDArray[np.float32] | None:
         if followed.landmarks is None:
             return None
         if self._space is None:
@@ -155,12 +153,11 @@ class Shot:
             if one.colours is not None and begin <= one.time - self.start <= end
         ] or [one.colours for one in waiting if one.colours is not None]
         self._set_base(chosen)
-        tops = tuple(
-            self._decomposer.encoder.output_info[name].range[1] for name in PIGMENTS
-        )
+        tops = tuple(self._decomposer.encoder.output_info[name].range[1] for name in PIGMENTS)
         table = tabulate_colours(self._decomposer.decoder, self.rest.capture, (tops[0], tops[1]))
         self._response = BloodResponse(table, self.rest, self._regions)
         self._direction = self._response.differentiate()[0]
+        self._resting = self.space.fill(self.rest.hemoglobin)
         self._texel_weights = self._weigh_texels(table)
         self._noise = RunningNoise(len(NAMES))
         self._before: Array | None = None
@@ -191,9 +188,11 @@ class Shot:
         seen &= colours.min(1) > 0
         with np.errstate(divide="ignore", invalid="ignore"):
             ratio = np.log(colours / self._base)
-        own = ratio - np.nanmedian(ratio[seen & self._usable], 0, keepdims=True) if (
-            seen & self._usable
-        ).any() else ratio
+        own = (
+            ratio - np.nanmedian(ratio[seen & self._usable], 0, keepdims=True)
+            if (seen & self._usable).any()
+            else ratio
+        )
         # Hair, a hand or glasses before the skin change a texel's chroma beyond any blood.
         chroma = np.abs(own[:, [0, 2]] - own[:, 1:2]).max(1)
         seen &= chroma < 0.5
@@ -237,6 +236,7 @@ class Shot:
             ratios,
             self._map(colours, seen, float(found.gain[0])) if self._with_maps else None,
             self._direction,
+            self._resting if self._with_maps else None,
         )
 
     def resting_blood(self) -> tuple[Array, Array]:
@@ -266,7 +266,9 @@ class Shot:
         step = np.float32(0.1)
         lit = [
             np.log(
-                np.maximum(table(self.rest.melanin, self.rest.hemoglobin * np.exp(way * step)), 1e-4)
+                np.maximum(
+                    table(self.rest.melanin, self.rest.hemoglobin * np.exp(way * step)), 1e-4
+                )
                 + self.rest.gloss[:, None]
             )
             for way in (-1, 1)

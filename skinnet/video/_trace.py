@@ -47,7 +47,5 @@ class Trace:
         pairs = self._rows.reshape(MOST // 2, 2, -1)
         seen = np.isfinite(pairs)
         total = np.where(seen, pairs, 0).sum(1)
-        self._rows[: MOST // 2] = np.where(
-            seen.any(1), total / np.maximum(seen.sum(1), 1), np.nan
-        )
+        self._rows[: MOST // 2] = np.where(seen.any(1), total / np.maximum(seen.sum(1), 1), np.nan)
         self._count, self._per_row = MOST // 2, 2 * self._per_row

@@ -111,12 +111,17 @@ class Track:
 
 
 def _describe_event(event: Event) -> dict[str, Any]:
-    low, high = (event.log_ratio + way * 1.645 * event.sd for way in (-1, 1))
-    numbers = event._asdict() | {
+    numbers = {
+        "onset": event.onset,
+        "peak": event.peak,
+        "end": event.end,
+        "log_ratio": event.log_ratio,
+        "sd": event.sd,
         "factor": float(np.exp(event.log_ratio)),
-        "interval": [float(np.exp(low)), float(np.exp(high))],
+        "interval": [float(np.exp(event.log_ratio + way * 1.645 * event.sd)) for way in (-1, 1)],
     }
-    return dict(round_all(numbers))
+    what = {"kind": event.kind, "region": event.region, "shot": event.shot}
+    return what | round_all(numbers)
 
 
 def _summarise_regions(means: Array, log_sds: Array, top: float) -> dict[str, dict[str, Any]]:

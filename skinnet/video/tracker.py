@@ -247,8 +247,7 @@ class Tracker:
     def _summarise(self) -> Track:
         rest = np.array(self._rest)  # [shots, 4, regions]
         info = self._decomposer.encoder.output_info
-        melanin = np.exp(np.nanmedian(np.log(rest[:, 0]), 0))
-        melanin_sd = np.nanmedian(rest[:, 1], 0)
+        melanin, melanin_sd = np.exp(_take_median(np.log(rest[:, 0]))), _take_median(rest[:, 1])
         lost = self._frames[LOST]
         if lost:
             self._note(f"{lost} of {sum(self._frames.values())} frames show no face.")
@@ -267,6 +266,14 @@ class Tracker:
             self._peak,
             self._portraits[1],
         )
+
+
+def _take_median(shots: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Median over shots [shots, regions]; NaN for regions that no shot shows."""
+    seen = np.isfinite(shots).any(0)
+    median = np.full(shots.shape[1], np.nan)
+    median[seen] = np.nanmedian(shots[:, seen], 0)
+    return median
 
 
 def _make_lost(number: int, time: float, shot: int) -> Reading:
