@@ -1,5 +1,7 @@
 """The panel of a tracked video."""
 
+import itertools
+
 import numpy as np
 from numpy.typing import NDArray
 from PIL import Image, ImageDraw
@@ -183,7 +185,7 @@ def _draw_line(
 ) -> None:
     points = [(scale.x(t), scale.y(v)) if np.isfinite(v) else None
               for t, v in zip(times, values, strict=True)]  # fmt: skip
-    for start, end in zip(points[:-1], points[1:], strict=True):
+    for start, end in itertools.pairwise(points):
         if start is not None and end is not None:
             draw.line((*start, *end), fill=(*colour, 255), width=width)
 

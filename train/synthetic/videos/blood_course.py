@@ -1,6 +1,7 @@
 """How blood in a face changes over time: pulse, flush and blanching."""
 
 import csv
+import itertools
 from dataclasses import dataclass
 from functools import cache
 from pathlib import Path
@@ -122,7 +123,7 @@ def _measured_beat() -> Float[np.ndarray, "samples"]:
     ]
     beats = [
         np.interp(np.linspace(a, b, 200), np.arange(len(wave)), wave)
-        for a, b in zip(feet[:-1], feet[1:], strict=True)
+        for a, b in itertools.pairwise(feet)
     ]
     return _normalise(np.median(beats, 0)) if beats else _model_beat()
 

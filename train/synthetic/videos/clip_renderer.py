@@ -135,6 +135,11 @@ class ClipRenderer:
         count = round(self.settings.seconds * self.settings.rate)
         return np.arange(count) / self.settings.rate
 
+    @property
+    def resting_hemoglobin(self) -> float:
+        """Mean hemoglobin of the face at rest."""
+        return float(self._hemoglobin[self.regions[0]].mean())
+
     def __iter__(self) -> Iterator[ClipFrame]:
         for time in self.times.tolist():
             yield ClipFrame(time, self.render(time), self.true_change(time))

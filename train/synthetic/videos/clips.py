@@ -13,6 +13,9 @@ from train.synthetic.videos.blood_course import BloodCourse, sample_course
 from train.synthetic.videos.clip_renderer import ClipRenderer, ClipSettings
 from train.synthetic.videos.head_motion import KINDS, HeadMotion, sample_motion
 
+QUALITY = (8, 17)
+"""Range of constant rate factors of H.264: .1 to 1 bit a pixel, as telephones write."""
+
 
 class ClipPlan(NamedTuple):
     """What is sampled of a clip.
@@ -22,12 +25,14 @@ class ClipPlan(NamedTuple):
         melanin: Base fraction of melanin.
         course: How the blood changes.
         motion: How head and exposure change.
+        quality: Constant rate factor of H.264.
     """
 
     number: int
     melanin: float
     course: BloodCourse
     motion: HeadMotion
+    quality: int
 
 
 @dataclass(frozen=True)
@@ -72,7 +77,8 @@ class Clips:
         place = (order[number % self.count] + rng.random()) / self.count
         melanin = float(np.exp(low + place * (high - low)))
         course = sample_course(rng, number, self.settings.seconds)
-        return ClipPlan(number, melanin, course, sample_motion(rng, KINDS[number % len(KINDS)]))
+        motion = sample_motion(rng, KINDS[number % len(KINDS)])
+        return ClipPlan(number, melanin, course, motion, int(rng.integers(*QUALITY)))
 
     def make_renderer(self, data: SyntheticFaces, plan: ClipPlan) -> ClipRenderer:
         """Make the renderer of a clip, of the first scene in which a face is found.
@@ -98,11 +104,8 @@ class Clips:
 def _give_melanin(scene: SceneParameters, melanin: float) -> SceneParameters:
     """Replace the base fraction of melanin, and keep the face's exposure: a meter would."""
     skin = scene.face.skin
-    before = float(skin.melanin.fraction)
     pigment = skin.melanin._replace(fraction=torch.full_like(skin.melanin.fraction, melanin))
-    hair = scene.face.hair
-    del before
-    face = scene.face._replace(skin=skin._replace(melanin=pigment), hair=hair)
+    face = scene.face._replace(skin=skin._replace(melanin=pigment))
     camera = scene.camera._replace(
         metering=torch.full_like(scene.camera.metering, 0.8),
         exposure=scene.camera.exposure**0.3,
