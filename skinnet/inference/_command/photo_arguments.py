@@ -132,6 +132,52 @@ def add_compare(verb: argparse.ArgumentParser) -> None:
     add_known(verb, "the session of both")
 
 
+def add_track(verb: argparse.ArgumentParser) -> None:
+    """Add the flags of `skinnet track`."""
+    verb.add_argument(
+        "input",
+        nargs="?",
+        help="a video, or a folder of frames with their time stamps in times.csv (file,time)",
+    )
+    add_folder(verb, "the video's folder")
+    verb.add_argument(
+        "--face",
+        type=lambda word: int(word) if word.lstrip("-").isdecimal() else word,
+        metavar="N|largest",
+        help="which face, where the video begins with several: its number from left to right",
+    )
+    verb.add_argument(
+        "--baseline",
+        type=_read_seconds,
+        default=(0.0, 3.0),
+        metavar="A,B",
+        help="first and last second of the baseline, from the start of each shot; 0,3 by default",
+    )
+    verb.add_argument(
+        "--fps", type=float, metavar="N", help="frames a second, where there are no time stamps"
+    )
+    verb.add_argument(
+        "--seconds", type=float, metavar="N", help="read the first N seconds; all by default"
+    )
+    verb.add_argument(
+        "--no-map", dest="map", action="store_false", help="write no video of the map; faster"
+    )
+    add_json(verb)
+    add_model(verb)
+    add_known(verb, "the session")
+
+
+def _read_seconds(word: str) -> tuple[float, float]:
+    """Two numbers with a comma between them."""
+    try:
+        begin, end = (float(each) for each in word.split(","))
+    except ValueError as error:
+        raise argparse.ArgumentTypeError(
+            f"--baseline is its first and last second, such as 0,3; got {word!r:.40}."
+        ) from error
+    return begin, end
+
+
 def add_capture(verb: argparse.ArgumentParser) -> None:
     """Add the flags of `skinnet capture`."""
     verb.add_argument("input", help="a picture of a colour chart, or of something white or grey")

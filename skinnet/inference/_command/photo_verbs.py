@@ -77,6 +77,19 @@ PHOTO_VERBS = {
             ("skinnet compare before.jpg after.jpg --capture studio.yaml", "in a known session"),
         ),
     ),
+    "track": PhotoVerb(
+        "follow hemoglobin of a face in a video: pulse, flush and blanching",
+        photo_arguments.add_track,
+        "skinnet.video._track_verb:track",
+        (
+            ("skinnet track video.mp4", "a table, a summary, a panel and a video of the map"),
+            ("skinnet track frames --fps 25", "a folder of frames without time stamps"),
+            ("skinnet track --camera 0 --seconds 60", "a minute of the first camera"),
+        ),
+        "Every frame is compared with a baseline, the first three seconds. Videos need the video "
+        "extra. --camera with a number is a device, and with a name the camera that took the "
+        "video. It is no medical device.",
+    ),
     "capture": PhotoVerb(
         "make a profile of a session from a picture of a colour chart or a white reference",
         photo_arguments.add_capture,

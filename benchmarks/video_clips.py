@@ -1,0 +1,140 @@
+"""One synthetic clip, rendered, compressed, tracked and compared with its truth."""
+
+from collections.abc import Sequence
+from pathlib import Path
+from tempfile import TemporaryDirectory
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from benchmarks.pulse_baselines import METHODS, estimate_pulse
+from benchmarks.video_peers import PulsePeer
+from skinnet.errors import InputError
+from skinnet.inference import Decomposer
+from skinnet.inference.indices import compute_indices
+from skinnet.video import Track, Tracker
+from skinnet.video._readings import Reading
+from skinnet.video._regions import FACE, NAMES
+from skinnet.video._video_frames import Frame, VideoFrames
+from train.synthetic.faces import SyntheticFaces
+from train.synthetic.videos.clip_files import write_clip
+from train.synthetic.videos.clips import ClipPlan, Clips
+
+Array = NDArray[np.float64]
+
+LIGHT, DARK = 41.0, 10.0
+"""Typology angles, in degrees, above which a tone is light, and below which it is dark."""
+
+_AGAIN = 1.0
+"""Seconds of the baseline with which the second half of a clip is read again."""
+
+
+class ClipScore(NamedTuple):
+    """A clip and what was read of it.
+
+    Attributes:
+        plan: What was sampled.
+        tone: light, medium or dark.
+        truth: True log ratios to the baseline, [frames, regions].
+        change: Those that were read; NaN where they were not.
+        sd: Their standard deviations.
+        pulse: Beats per minute by method; None where there is none.
+        is_readable: Whether the tracker calls its pulse readable.
+        onset: Where the first event of the face of the true kind begins; None if none is found.
+        false_events: Events of the face of another kind than the true one.
+        melanin: Mean melanin that is read of the clip, and of its second half alone.
+        bits: Bits a pixel of the video file.
+    """
+
+    plan: ClipPlan
+    tone: str
+    truth: Array
+    change: Array
+    sd: Array
+    pulse: dict[str, float | None]
+    is_readable: bool
+    onset: float | None
+    false_events: int
+    melanin: tuple[float, float | None]
+    bits: float
+
+
+def score_clip(
+    clips: Clips,
+    data: SyntheticFaces,
+    number: int,
+    decomposer: Decomposer,
+    peers: Sequence[PulsePeer] = (),
+) -> ClipScore | None:
+    """Score a clip; None if the tracker refuses it."""
+    plan = clips.plan(number)
+    renderer = clips.make_renderer(data, plan)
+    with TemporaryDirectory() as folder:
+        path = Path(folder) / "clip.mp4"
+        write_clip(path, renderer, plan.quality)
+        pixels = len(renderer.times) * clips.settings.size**2
+        bits = 8 * path.stat().st_size / pixels
+        truth = np.stack([renderer.true_change(time) for time in renderer.times.tolist()])
+        frames = list(VideoFrames(path, f"clip {number}"))
+    try:
+        track, readings = follow(decomposer, frames)
+    except InputError:
+        return None
+    times = np.array([one.time for one in readings])
+    end = track.shots[0]["baseline"][1]
+    truth = truth[: len(readings)] - truth[: len(readings)][times <= end].mean(0)
+    events = [one for one in track.events if one.region == FACE]
+    right = [one.onset for one in events if one.kind == plan.course.kind]
+    return ClipScore(
+        plan,
+        find_tone(plan.melanin, float(renderer.resting_hemoglobin)),
+        truth,
+        np.stack([one.change for one in readings]),
+        np.stack([one.change_sd for one in readings]),
+        _find_pulses(track, readings) | {one.name: one(frames) for one in peers},
+        bool(track.pulse["is_readable"]),
+        right[0] if right else None,
+        len(events) - len(right),
+        (float(track.melanin[FACE]["mean"]), _read_again(decomposer, frames)),
+        bits,
+    )
+
+
+def follow(
+    decomposer: Decomposer, frames: list[Frame], baseline: tuple[float, float] = (0.0, 3.0)
+) -> tuple[Track, list[Reading]]:
+    """Track frames. Returns the summary and all readings."""
+    tracker, readings = Tracker(decomposer, baseline=baseline, maps=False), []
+    for frame in frames:
+        readings += tracker.add(frame.pixels, frame.time)
+    track = tracker.finish()
+    return track, readings + tracker.waiting
+
+
+def find_tone(melanin: float, hemoglobin: float) -> str:
+    """Name the tone of skin with these fractions, by its typology angle."""
+    angle = compute_indices(melanin, hemoglobin).typology_angle
+    degrees = angle.value
+    return "light" if degrees > LIGHT else "dark" if degrees < DARK else "medium"
+
+
+def _find_pulses(track: Track, readings: list[Reading]) -> dict[str, float | None]:
+    face = NAMES.index(FACE)
+    rows = [(one.time, *one.ratios[face]) for one in readings if one.state == "read"]
+    values = np.array(rows)
+    pulses: dict[str, float | None] = {"skinnet": track.pulse["rate_bpm"]}
+    for name, method in METHODS.items():
+        pulses[name] = estimate_pulse(values[:, 0], values[:, 1:], method)
+    return pulses
+
+
+def _read_again(decomposer: Decomposer, frames: list[Frame]) -> float | None:
+    """Melanin of the second half of a clip, read as a video of its own."""
+    half = frames[len(frames) // 2 :]
+    some = [one for one in half if one.time <= half[0].time + _AGAIN + 0.1]
+    try:
+        track, _ = follow(decomposer, some, (0.0, _AGAIN))
+    except InputError:
+        return None
+    return float(track.melanin[FACE]["mean"])

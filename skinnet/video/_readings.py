@@ -1,0 +1,58 @@
+"""What is read of one frame."""
+
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+Array = NDArray[np.float64]
+
+READ, LOST, HIDDEN = "read", "lost", "hidden"
+"""States of a frame: it is read, no face was found, or too little skin is seen."""
+
+
+class Reading(NamedTuple):
+    """Hemoglobin of the regions in one frame; NaN where a region cannot be read.
+
+    Attributes:
+        number: Number of the frame, from 0.
+        time: Time stamp in seconds.
+        shot: Number of the shot, from 1; a cut begins another one.
+        state: read, lost (no face was found) or hidden (too little skin is seen).
+        change: Natural logarithm of hemoglobin over that of the baseline, of `NAMES`, [regions].
+        change_sd: Its standard deviation, [regions].
+        hemoglobin: Volume fraction of blood in the dermis, [regions].
+        log_sd: Standard deviation of its logarithm, [regions].
+        gain: Exposure and shading relative to the baseline, [regions].
+        ratios: Log ratio of linear RGB to the baseline, [regions, 3].
+        texture: Log change over the face's texture, float32 [size, size]; None if not asked for.
+        direction: Derivative of the face's log RGB by log hemoglobin at rest, [3].
+        resting: Hemoglobin over the texture at rest, float32 [size, size]; None without `texture`.
+    """
+
+    number: int
+    time: float
+    shot: int
+    state: str
+    change: Array
+    change_sd: Array
+    hemoglobin: Array
+    log_sd: Array
+    gain: Array
+    ratios: Array
+    texture: NDArray[np.float32] | None = None
+    direction: Array | None = None
+    resting: NDArray[np.float32] | None = None
+
+
+def make_blank(number: int, time: float, shot: int, state: str, regions: int) -> Reading:
+    """Make the reading of a frame of which nothing is read."""
+    nothing = np.full(regions, np.nan)
+    return Reading(
+        number,
+        time,
+        shot,
+        state,
+        *(nothing.copy() for _ in range(5)),
+        ratios=np.full((regions, 3), np.nan),
+    )

@@ -1,0 +1,299 @@
+"""One shot of a video, between two cuts: its baseline, its resting maps, and its readings."""
+
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy import ndimage
+
+from skinnet.images.faces._face_place import place_face, to_box
+from skinnet.images.faces.face import Face
+from skinnet.inference._uncertainty import PIGMENTS
+from skinnet.inference.decomposer import Decomposer
+from skinnet.inference.full_resolution._colour_table import tabulate_colours
+from skinnet.video._blood_response import BloodResponse
+from skinnet.video._face_follower import Followed
+from skinnet.video._frame_colours import BRIGHTEST, DARKEST, FrameColours
+from skinnet.video._noise import RunningNoise
+from skinnet.video._readings import HIDDEN, LOST, READ, Reading, make_blank
+from skinnet.video._regions import FACE, NAMES
+from skinnet.video._resting_maps import Look, RestingMaps, pool_looks, read_look
+from skinnet.video._texture_space import SIZE, TextureSpace, sample
+
+_LEAST_TEXELS = 12
+_LEAST_SHARE = 0.4
+"""Least part of a region's skin at rest that is seen in a frame for it to be read."""
+
+_MOST_BUFFERED = 1200
+"""Frames of the baseline that are kept at most; later ones of it are left out."""
+
+_GLOSS_SD, _GLOSS_BY_BEND = 0.006, 0.5
+"""Standard deviation of the change of gloss, in shares of a region's green light, of a still head,
+and by how much it grows with the bend of the mesh."""
+
+_CHROMA_BY_BEND = 0.05
+"""Standard deviation of log colour for each unit of bend, by which the mesh slides on the skin."""
+
+_SCALE_SD = 0.15
+"""Relative standard deviation of a change: tone curve, camera and resting maps scale it."""
+
+_BLUR = 2.5
+"""Standard deviation, in texels, over which the map of changes is smoothed."""
+
+Array = NDArray[np.float64]
+
+
+class _Buffered(NamedTuple):
+    """A frame of the baseline that waits for its end."""
+
+    number: int
+    time: float
+    colours: NDArray[np.float32] | None
+    bend: float
+
+
+class Shot:
+    """Reads the frames of one shot.
+
+    Args:
+        decomposer: Reads the face at rest.
+        number: Number of the shot, from 1.
+        start: Time stamp of its first frame, in seconds.
+        baseline: First and last second of the baseline, from the start of the shot.
+        looks: Frames of the baseline that the network reads.
+        colours: Samples frames.
+        capture: What is known of light and camera.
+        with_maps: Whether readings have a map of the face.
+    """
+
+    def __init__(
+        self,
+        decomposer: Decomposer,
+        number: int,
+        start: float,
+        baseline: tuple[float, float],
+        looks: int,
+        colours: FrameColours,
+        capture: object | None,
+        with_maps: bool,
+    ) -> None:
+        self._decomposer, self.number, self.start = decomposer, number, start
+        self._baseline, self._wanted = baseline, looks
+        self._colours, self._capture, self._with_maps = colours, capture, with_maps
+        self._space: TextureSpace | None = None
+        self._buffer: list[_Buffered] = []
+        self._looks: list[tuple[Look, int]] = []
+        self.rest: RestingMaps | None = None
+        self.portrait: NDArray[np.uint8] | None = None
+        self.notes: tuple[str, ...] = ()
+
+    def add(
+        self, number: int, time: float, frame: NDArray[np.uint8], followed: Followed
+    ) -> list[Reading]:
+        """Add a frame. Returns the readings that are ready: all of the baseline at its end."""
+        colours = self._sample(frame, followed)
+        if self.rest is None and colours is not None:
+            self._look(frame, time, followed)
+        if self.rest is not None:
+            return [self._read(number, time, colours, followed.bend)]
+        if len(self._buffer) < _MOST_BUFFERED:
+            self._buffer.append(_Buffered(number, time, colours, followed.bend))
+        if time - self.start >= self._baseline[1] and self._looks:
+            return self.finish()
+        return []
+
+    def finish(self) -> list[Reading]:
+        """End the baseline now. Returns the readings of the frames that waited."""
+        waiting, self._buffer = self._buffer, []
+        if self.rest is None and self._looks:
+            self._begin(waiting)
+        if self.rest is None:
+            return [make_blank(one.number, one.time, self.number, LOST, len(NAMES))
+                    for one in waiting]  # fmt: skip
+        return [self._read(*one) for one in waiting]
+
+    @property
+    def space(self) -> TextureSpace:
+        """The texture space of the shot."""
+        assert self._space is not None
+        return self._space
+
+    def _sample(self, frame: NDArray[np.uint8], followed: Followed) -> NDArray[np.float32] | None:
+        if followed.landmarks is None:
+            return None
+        if self._space is None:
+            self._space = TextureSpace.from_landmarks(followed.landmarks)
+        return self._colours(frame, self._space, followed.landmarks)
+
+    def _look(self, frame: NDArray[np.uint8], time: float, followed: Followed) -> None:
+        """Let the network read the frame, if it is time for another look."""
+        begin, end = self._baseline
+        due = begin + len(self._looks) * (end - begin) / max(self._wanted - 1, 1)
+        if time - self.start < due - 1e-6 or len(self._looks) >= self._wanted:
+            return
+        assert followed.landmarks is not None
+        square = place_face(followed.landmarks)
+        face = Face(to_box(square), float(np.degrees(square.tilt)), 1.0, followed.landmarks)
+        name = f"the frame at {time:.2f} s"
+        look = read_look(self._decomposer, frame, face, self.space, name, self._capture)
+        self._looks.append((look, len(self._buffer)))
+        if self.portrait is None:
+            points = self.space.place(followed.landmarks)
+            picked = sample(frame.astype(np.float32), points)
+            self.portrait = np.rint(self.space.fill(picked, 232)).astype(np.uint8)
+
+    def _begin(self, waiting: list[_Buffered]) -> None:
+        """Set the baseline, and the answer of the regions to blood."""
+        self.notes = tuple(dict.fromkeys(note for look, _ in self._looks for note in look.notes))
+        self.rest = pool_looks([look for look, _ in self._looks])
+        begin, end = self._baseline
+        chosen = [
+            one.colours
+            for one in waiting
+            if one.colours is not None and begin <= one.time - self.start <= end
+        ] or [one.colours for one in waiting if one.colours is not None]
+        self._set_base(chosen)
+        tops = tuple(self._decomposer.encoder.output_info[name].range[1] for name in PIGMENTS)
+        table = tabulate_colours(self._decomposer.decoder, self.rest.capture, (tops[0], tops[1]))
+        self._response = BloodResponse(table, self.rest, self._regions)
+        self._direction = self._response.differentiate()[0]
+        self._resting = self.space.fill(self.rest.hemoglobin)
+        self._texel_weights = self._weigh_texels(table)
+        self._noise = RunningNoise(len(NAMES))
+        self._before: Array | None = None
+        self._warm_up(waiting)
+
+    def _set_base(self, chosen: list[NDArray[np.float32]]) -> None:
+        assert self.rest is not None
+        stack = np.stack(chosen)
+        level = np.nanmedian(np.nanmean(stack, 2), 1)[:, None, None]
+        base = np.nanmean(stack * (np.median(level) / level), 0)
+        self._base = base.astype(np.float32)
+        usable = self.rest.skin & np.isfinite(base).all(1)
+        usable &= (base.max(1) < BRIGHTEST) & (base.min(1) > DARKEST)
+        self._usable = usable
+        regions = self.space.regions[:, self.space.inside]
+        self._regions = regions & usable
+        self._areas = self._regions.sum(1)
+
+    def _warm_up(self, waiting: list[_Buffered]) -> None:
+        """Learn the noise from the baseline, before its first frame is solved."""
+        for one in waiting:
+            if one.colours is not None:
+                self._noise.add(one.time, self._compare(one.colours)[0])
+
+    def _compare(self, colours: NDArray[np.float32]) -> tuple[Array, NDArray[np.bool_]]:
+        """Log ratios of the regions' colours to the baseline, [regions, 3]; NaN if hidden."""
+        seen = np.isfinite(colours).all(1) & (colours.max(1) < BRIGHTEST)
+        seen &= colours.min(1) > 0
+        with np.errstate(divide="ignore", invalid="ignore"):
+            ratio = np.log(colours / self._base)
+        own = (
+            ratio - np.nanmedian(ratio[seen & self._usable], 0, keepdims=True)
+            if (seen & self._usable).any()
+            else ratio
+        )
+        # Hair, a hand or glasses before the skin change a texel's chroma beyond any blood.
+        chroma = np.abs(own[:, [0, 2]] - own[:, 1:2]).max(1)
+        seen &= chroma < 0.5
+        masks = (self._regions & seen).astype(np.float32)
+        lit = masks @ np.where(seen[:, None], colours, 0)
+        base = masks @ np.where(seen[:, None], self._base, 0)
+        count = masks.sum(1)
+        enough = (count >= _LEAST_TEXELS) & (count >= _LEAST_SHARE * self._areas)
+        with np.errstate(divide="ignore", invalid="ignore"):
+            ratios = np.log(lit.astype(np.float64)) - np.log(base.astype(np.float64))
+        ratios[~enough] = np.nan
+        return ratios, seen
+
+    def _read(
+        self, number: int, time: float, colours: NDArray[np.float32] | None, bend: float
+    ) -> Reading:
+        if colours is None:
+            return make_blank(number, time, self.number, LOST, len(NAMES))
+        ratios, seen = self._compare(colours)
+        read = np.isfinite(ratios).all(1)
+        if not read[NAMES.index(FACE)]:
+            return make_blank(number, time, self.number, HIDDEN, len(NAMES))
+        if self._before is not None:
+            self._noise.add(time, ratios)
+        noise = self._noise.covariance + (_CHROMA_BY_BEND * bend) ** 2 * np.eye(3)
+        gloss = _GLOSS_SD + _GLOSS_BY_BEND * bend**2
+        found = self._response.solve(np.where(read[:, None], ratios, 0.0), noise, gloss)
+        change = np.where(read, found.change, np.nan)
+        sd = np.where(read, np.hypot(found.sd, _SCALE_SD * found.change), np.nan)
+        base, base_sd = self.resting_blood()
+        return Reading(
+            number,
+            time,
+            self.number,
+            READ,
+            change,
+            sd,
+            base * np.exp(change),
+            np.hypot(base_sd, sd),
+            np.where(read, np.exp(found.gain), np.nan),
+            ratios,
+            self._map(colours, seen, float(found.gain[0])) if self._with_maps else None,
+            self._direction,
+            self._resting if self._with_maps else None,
+        )
+
+    def resting_blood(self) -> tuple[Array, Array]:
+        """Mean hemoglobin of the regions at rest, and the sd of its logarithm, [regions]."""
+        return self._average(1)
+
+    def resting_melanin(self) -> tuple[Array, Array]:
+        """The same of melanin."""
+        return self._average(0)
+
+    def _average(self, pigment: int) -> tuple[Array, Array]:
+        assert self.rest is not None
+        values = (self.rest.melanin, self.rest.hemoglobin)[pigment]
+        share = self._decomposer.encoder.region_share[pigment]
+        face, means, sds = self.rest.face_sd[pigment], [], []
+        for mask in self._regions:
+            some = bool(mask.any())
+            means.append(float(values[mask].mean()) if some else np.nan)
+            pixels = float((self.rest.pixel_sd[pigment][mask] ** 2).mean()) if some else 0.0
+            sds.append(float(np.sqrt(face**2 + share * max(pixels - face**2, 0))))
+        sds[0] = float(face)
+        return np.array(means), np.array(sds)
+
+    def _weigh_texels(self, table: object) -> NDArray[np.float32]:
+        """Weights of log R, G, B in the change of each covered texel, [texels, 3]."""
+        assert self.rest is not None and callable(table)
+        step = np.float32(0.1)
+        lit = [
+            np.log(
+                np.maximum(
+                    table(self.rest.melanin, self.rest.hemoglobin * np.exp(way * step)), 1e-4
+                )
+                + self.rest.gloss[:, None]
+            )
+            for way in (-1, 1)
+        ]
+        slope = ((lit[1] - lit[0]) / (2 * step)).astype(np.float64)
+        white = self._base[:, 1:2] / np.maximum(self._base, 1e-4) * _GLOSS_SD
+        noise = (2 * _GLOSS_SD) ** 2 * np.eye(3) + 4.0
+        total = noise + white[:, :, None] * white[:, None, :]
+        weights = np.linalg.solve(total, slope[..., None])[..., 0]
+        information = np.maximum((weights * slope).sum(1), 1e-9)
+        return (weights / information[:, None]).astype(np.float32)
+
+    def _map(
+        self, colours: NDArray[np.float32], seen: NDArray[np.bool_], gain: float
+    ) -> NDArray[np.float32]:
+        """Log change over the texture, smoothed; NaN where it is not skin."""
+        chosen = seen & self._usable
+        with np.errstate(divide="ignore", invalid="ignore"):
+            ratio = np.log(colours / self._base) - np.float32(gain)
+        values = np.where(chosen, (ratio * self._texel_weights).sum(1), 0)
+        layers = self.space.fill(np.stack([values, chosen], -1).astype(np.float32), 0.0)
+        smooth = ndimage.gaussian_filter(layers, (_BLUR, _BLUR, 0))
+        with np.errstate(divide="ignore", invalid="ignore"):
+            texture = smooth[..., 0] / smooth[..., 1]
+        hidden = ~self.space.fill(self._usable, 0).astype(bool) | (smooth[..., 1] < 0.2)
+        texture[hidden] = np.nan
+        assert texture.shape == (SIZE, SIZE)
+        return np.asarray(texture, np.float32)

@@ -1,0 +1,1 @@
+"""Synthetic videos of faces whose blood changes, with the truth."""
