@@ -6,13 +6,13 @@ from collections.abc import Callable
 from pathlib import Path
 
 import pytest
+import shape_checks
 from hypothesis import settings
-from jaxtyping import install_import_hook
 
 # Tensors are small: a second thread would mostly wait, above all on a busy machine.
 os.environ.setdefault("OMP_NUM_THREADS", "1")
 # Before anything of the package is imported: the hook rewrites modules as they are loaded.
-install_import_hook("skinnet", "shape_checks.check")
+shape_checks.install()
 
 import torch  # noqa: E402
 
@@ -25,6 +25,11 @@ settings.register_profile(
 settings.load_profile("skinnet")
 
 SHARED = Path(__file__).parents[2] / "shared" / "data"
+
+
+def pytest_runtest_setup() -> None:
+    """Check shapes anew in each test."""
+    shape_checks.start_test()
 
 
 def pytest_collection_finish() -> None:

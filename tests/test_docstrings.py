@@ -24,10 +24,11 @@ NAMES = [(room, name) for room in ROOMS for name in public(room)]
 
 
 def test_every_public_definition_is_handed_out_by_its_room() -> None:
+    modules = list(read(ROOT / "skinnet"))
     for room in ROOMS:
         found = {
             one.name
-            for module in read(ROOT / "skinnet")
+            for module in modules
             if module.room == room and module.public
             for one in list_definitions(module.tree)
         }

@@ -49,15 +49,11 @@ def test_a_transform_comes_back_from_half_of_all_skin_within_the_claim_and_the_c
 
 def test_the_claim_covers_the_error_in_nine_of_ten_trials() -> None:
     # `python -m benchmarks.calibration` makes fifty.
-    trials = [one for cover in ("all", "paler", "darker") for one in known_trials(cover, 0.005, 1)]
-    trials += crowd_trials(4, 100_000)
+    covers = ("all", "paler", "darker")
+    trials = [one for cover in covers for one in known_trials(cover, 0.005, 1, 4000)]
+    trials += crowd_trials(4, 4000)
     assert len(trials) == 10
     assert np.mean([trial.error <= trial.uncertainty for trial in trials]) >= 0.9
-
-
-def test_the_claim_covers_the_error_of_a_sample_of_trials() -> None:
-    trials = [*known_trials("paler", 0.005, 1, 5000), *crowd_trials(1, 20_000)]
-    assert all(trial.error <= trial.uncertainty for trial in trials)
 
 
 def test_stray_colours_are_claimed_and_hardly_matter(model: Model) -> None:
@@ -85,7 +81,7 @@ def test_data_that_fade_out_inside_the_gamut_are_within_the_claim(model: Model) 
 
 
 def test_a_list_of_the_nodes_is_the_grid(model: Model) -> None:
-    data = known_colours(MIX, count=3000)
+    data = known_colours(MIX, count=500)
     listed = calibrate(data, model.reshape(-1, 3), 3)
     np.testing.assert_array_equal(listed.transform, calibrate(data, model, 3).transform)
 
@@ -98,7 +94,7 @@ def test_a_list_of_the_nodes_is_the_grid(model: Model) -> None:
         (lambda data: np.tile(data[:1], (500, 1)), "all nearly one colour"),
         (lambda data: np.linspace(0.2, 1, 500)[:, None] * data[:1], "lie on a line"),
         (lambda data: -data, "skin reflects in all channels"),
-        (lambda data: np.random.default_rng(0).uniform(0, 1, (2000, 3)), "No transform brings"),
+        (lambda data: np.random.default_rng(0).uniform(0, 1, (600, 3)), "No transform brings"),
         (lambda data: data[:, :2], "The data are colours"),
     ],
 )
