@@ -33,10 +33,10 @@ def write_pictures(folder: Path) -> None:
     for name in ("session", "folder", "photographs"):
         (folder / name).mkdir()
     for name, gain in {"a": (1, 1, 1), "b": (1.06, 1, 0.9), "c": (0.95, 1, 1.08)}.items():
-        shot = (photo * np.array(gain)).clip(0, 255).astype(np.uint8)
+        shot = (photo[:300, :400] * np.array(gain)).clip(0, 255).astype(np.uint8)
         _save(shot, folder / f"{name}.jpg")
-        shutil.copy(folder / f"{name}.jpg", folder / "session")
-        _save(shot[:300, :400], folder / "photographs" / f"{name}.jpg")
+        for copies in ("session", "photographs"):
+            shutil.copy(folder / f"{name}.jpg", folder / copies)
     shutil.copy(folder / "photo.jpg", folder / "folder")
     shutil.copytree(folder / "session", folder / "photos")
 
