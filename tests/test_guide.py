@@ -18,6 +18,7 @@ from skinnet.batch.__main__ import make_parser
 from skinnet.cli import main
 from skinnet.inference import SHIPPED_ENCODER, open_model
 from skinnet.inference._onnx_pair import get_decoder_path
+from skinnet.pipeline import relight
 
 ROOT = Path(__file__).parents[1]
 README = ROOT / "README.md"
@@ -106,7 +107,8 @@ WITH_COMMANDS = [page for page in PAGES if page != README and commands(page)]
 @pytest.mark.slow
 @pytest.mark.parametrize("page", WITH_COMMANDS, ids=name_page)
 @pytest.mark.usefixtures("inside")
-def test_commands_run(page: Path) -> None:
+def test_commands_run(page: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(relight, "TILE_SIZE", 48)  # Faces on panels; ray casting takes seconds.
     Path("configs").symlink_to(ROOT / "configs")
     if page.stem == "scans":
         Path("scans").mkdir()
