@@ -165,12 +165,12 @@ def _prepare(options: argparse.Namespace, found: Walk) -> tuple[int, Decomposer]
         InputError: A number or a model is wrong.
     """
     workers = choose_count(options.workers, found.pictures, options.provider)
-    decomposer = _make_decomposer(options)
     if workers == 1:
-        return 1, decomposer
+        return 1, _make_decomposer(options)
+    Decomposer(options.model, providers=options.provider).load()  # what is wrong is said once
     explain(f"{workers} processes read the photographs.")
     threads = max(1, count_cores() // workers)
-    return workers, Decomposer(options.model, threads, options.provider)
+    return workers, Decomposer(options.model, threads=threads, providers=options.provider)
 
 
 def _report_failure(table: FaceTable, page: FaceReport, name: str, error: Exception) -> None:

@@ -6,7 +6,7 @@ import re
 import threading
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
-from functools import lru_cache
+from functools import lru_cache, partial
 from pathlib import Path
 from typing import Any, Protocol
 
@@ -141,9 +141,7 @@ class _Pool:
             ) from error
         while (place := self.schedule.take()) is not None:
             try:
-                outcome = process.do(
-                    self._pictures[place], lambda place=place: self.schedule.wait_turn(place)
-                )
+                outcome = process.do(self._pictures[place], partial(self.schedule.wait_turn, place))
             except WorkerDiedError as error:
                 fault = _describe_death(self._pictures[place], error)
                 self.schedule.finish(place, Outcome(error=fault))
