@@ -3,7 +3,7 @@ PYTHON ?= $(or $(shell command -v python3.11),python3)
 BIN := .venv/bin
 READY := .venv/.ready
 
-.PHONY: demo test coverage test-fast test-lowest lint format bench docs runtime wheel clean
+.PHONY: demo test coverage fuzz test-fast test-lowest lint format bench docs runtime wheel clean
 
 demo: $(READY)
 	$(BIN)/python -m train fit --config configs/quick.yaml
@@ -16,6 +16,11 @@ test: $(READY) runtime
 # The lines that no test runs; tracing takes twice the time of the tests.
 coverage: $(READY) runtime
 	$(BIN)/python -m pytest -n 2 --cov --cov-report=term:skip-covered
+
+# An hour of damaged and hostile inputs; each fault is printed with the command that shows it again.
+MINUTES ?= 60
+fuzz: $(READY)
+	$(BIN)/python -m benchmarks.faults --minutes $(MINUTES) --seed $(or $(SEED),$(shell date +%s))
 
 test-fast: $(READY) runtime
 	$(BIN)/python -m pytest -n 2 -m "not slow"

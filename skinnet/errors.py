@@ -39,6 +39,12 @@ def _explain_fault(error: OSError, usual: str = "check the path") -> str:
     return f"({error.strerror or error}); {remedy}"
 
 
+def _name_error(error: BaseException, longest: int = 120) -> str:
+    """Name an error on one line, with the start of its message; some repeat the whole input."""
+    text = " ".join(str(error).split())
+    return f"{type(error).__name__}: {text:.{longest}}" if text else type(error).__name__
+
+
 def _check_count(name: str, value: int, least: int = 0) -> None:
     """Raise `InputError` unless a setting is a whole number that is not too small."""
     if not value >= least:

@@ -10,7 +10,7 @@ import numpy as np
 import onnxruntime
 from numpy.typing import NDArray
 
-from skinnet.errors import InputError
+from skinnet.errors import InputError, _name_error
 from skinnet.files._content import explain_format
 from skinnet.images._arguments import check_path
 from skinnet.inference._onnx_header import Header
@@ -232,17 +232,26 @@ def _read_metadata(
             metadata["skinnet.trained_on"],
             metadata["skinnet.optics"],
             size,
-            tuple(json.loads(metadata["skinnet.lights"])),
+            _read_names(metadata["skinnet.lights"]),
             {name: _read_output_info(outputs[name]) for name in maps},
             _read_pair(metadata["skinnet.region_share"]),
         )
     except (KeyError, ValueError, TypeError, AttributeError) as error:
-        raise InputError(f"The metadata of {path} is damaged ({error!r}); {REMEDY}.") from error
+        raise InputError(
+            f"The metadata of {path} is damaged ({_name_error(error)}); {REMEDY}."
+        ) from error
 
 
 def _read_output_info(entry: Mapping[str, Any]) -> OutputInfo:
     low, high = entry["range"]
     return OutputInfo(str(entry["unit"]), (float(low), float(high)), str(entry["description"]))
+
+
+def _read_names(text: str) -> tuple[str, ...]:
+    names = json.loads(text)
+    if not isinstance(names, list) or not all(isinstance(name, str) for name in names):
+        raise TypeError(f"the lights are {names!r:.60}")
+    return tuple(names)
 
 
 def _read_pair(text: str) -> tuple[float, float]:

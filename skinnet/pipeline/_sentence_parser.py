@@ -16,6 +16,7 @@ from skinnet.files._settings import MOST_SETTINGS, check_yaml, parse_settings, r
 from skinnet.pipeline._sentences import write_sentence
 
 _MODE = "bounded yaml"
+_LONGEST = 800
 _SETTINGS = (".yaml", ".yml", ".json")
 
 
@@ -96,9 +97,14 @@ class SentenceParser(ArgumentParser):
             if re.search(rf"""(?:['"]|--|: )(?:\w+\.)*{re.escape(old)}(?=[.'"=\s]|$)""", message):
                 raise InputError(f"'{old}' is now called '{new}'; use the new name.") from ex
         keys = [each.dest for each in self._actions]
-        sentence = write_sentence(" ".join(message.split()), self.prog, keys)
+        sentence = _shorten(write_sentence(" ".join(message.split()), self.prog, keys))
         help_command = self.help_command or f"{self.prog} --help"
         raise InputError(f"{sentence} ({help_command} lists the flags)") from ex
+
+
+def _shorten(sentence: str) -> str:
+    """Shorten a sentence that repeats a value of any length."""
+    return sentence if len(sentence) <= _LONGEST else f"{sentence[:200]} ... {sentence[-100:]}"
 
 
 def _list_settings(arguments: Sequence[str]) -> Iterator[str]:
