@@ -10,7 +10,7 @@ import numpy as np
 import onnxruntime
 from numpy.typing import NDArray
 
-from skinnet.errors import InputError, _name_error
+from skinnet.errors import InputError, _clip, _name_error
 from skinnet.files._content import explain_format
 from skinnet.images._arguments import check_path
 from skinnet.inference._onnx_header import Header
@@ -190,12 +190,13 @@ def _check_metadata(path: Path, kind: str, header: Header) -> None:
     if found != ONNX_FORMAT:
         advice = explain_format(found, int(ONNX_FORMAT), metadata.get("skinnet.version"))
         raise InputError(
-            f"{path} has format {found}, and this skinnet reads format {ONNX_FORMAT}; export it "
-            f"again with this version, or use the one that wrote it ({advice})."
+            f"{path} has format {_clip(found)}, and this skinnet reads format {ONNX_FORMAT}; "
+            f"export it again with this version, or use the one that wrote it ({advice})."
         )
     if actual != kind:
         raise InputError(
-            f"{path} is {_with_article(actual)}, but {_with_article(kind)} is needed; {REMEDY}."
+            f"{path} is {_with_article(_clip(actual))}, but {_with_article(kind)} is needed; "
+            f"{REMEDY}."
         )
 
 
@@ -211,7 +212,8 @@ def _check_names(path: Path, kind: str, session: onnxruntime.InferenceSession) -
         found = ", ".join(sorted(inputs | optional))
         raise InputError(
             f"{path} is labelled as {_with_article(kind)}, but its inputs are "
-            f"{found} and its outputs {', '.join(sorted(outputs))}; {REMEDY}."
+            f"{_clip(found, 300)} and its outputs {_clip(', '.join(sorted(outputs)), 300)}; "
+            f"{REMEDY}."
         )
 
 

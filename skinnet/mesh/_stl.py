@@ -41,11 +41,6 @@ def read_stl_content(
         corners = _read_inexact(path, content, stated)
     if not len(corners):
         raise refuse_points(path, 0)
-    if not np.isfinite(corners).all():
-        raise InputError(
-            f"{path} cannot be read as a mesh: a vertex of it is no number, or infinite; copy or "
-            "export it again."
-        )
     geometry = MeshGeometry(corners.reshape(-1, 3), np.arange(3 * len(corners)).reshape(-1, 3))
     return MeshContent([MeshPart(geometry, None, None, GREY)], [], False, np.zeros((0, 3)))
 

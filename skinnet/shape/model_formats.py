@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 
-from skinnet.errors import InputError, _name_error
+from skinnet.errors import InputError, _clip, _name_error
 from skinnet.files import READ_ERRORS, write_atomically
 from skinnet.files._content import explain_format
 from skinnet.files._npz import read_npz
@@ -163,7 +163,7 @@ def _load_npz(path: Path) -> ShapeModel:
 def _read_own(path: Path, arrays: Mapping[str, Any]) -> ShapeModel:
     if str(arrays[_KEY]) != VERSION:
         raise InputError(
-            f"{path} has version {arrays[_KEY]!s:.40}, and this skinnet reads version {VERSION}; "
+            f"{path} has version {_clip(arrays[_KEY])}, and this skinnet reads version {VERSION}; "
             "make it again with this version, or use the one that wrote it "
             f"({explain_format(arrays[_KEY], int(VERSION), None)})."
         )
