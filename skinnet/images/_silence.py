@@ -8,7 +8,7 @@ from contextlib import suppress
 from functools import cache
 from tempfile import TemporaryFile
 
-from PIL import Image
+from PIL import _imaging  # type: ignore[attr-defined]
 
 _LOGGERS = ("PIL", "tifffile")
 _LIBRAW = (b"unknown file: ",)
@@ -22,7 +22,7 @@ def silence_libraries() -> None:
         # Without a handler Python prints warnings of libraries.
         logging.getLogger(name).addHandler(logging.NullHandler())
     with suppress(OSError, AttributeError):  # Pillow's library may not show its parts
-        ctypes.CDLL(Image.core.__file__).TIFFSetErrorHandler(None)
+        ctypes.CDLL(_imaging.__file__).TIFFSetErrorHandler(None)
 
 
 class _Filter:

@@ -88,9 +88,7 @@ class SentenceParser(ArgumentParser):
                 f"A value of the settings cannot be used ({_name_error(error)}); correct it."
             ) from error
 
-    def instantiate(  # type: ignore[override]
-        self, namespace: Namespace, *more: Any, **kwargs: Any
-    ) -> Namespace:
+    def instantiate(self, namespace: Namespace, *more: Any, **kwargs: Any) -> Namespace:
         """Make the objects that settings describe.
 
         Args:
@@ -104,7 +102,8 @@ class SentenceParser(ArgumentParser):
         """
         self._check_given(namespace)
         try:
-            return super().instantiate(namespace, *more, **kwargs)
+            made: Namespace = super().instantiate(namespace, *more, **kwargs)
+            return made
         except TypeError as error:
             raise InputError(
                 f"The settings cannot be used ({_name_error(error)}); compare them with what "

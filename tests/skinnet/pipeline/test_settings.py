@@ -99,7 +99,7 @@ def test_settings_within_settings(tmp_path: Path, refused: Callable[..., str]) -
     [
         ("build-model", "appearance: {share: null}", "appearance.share has no value"),
         ("fit-shape", "fit: [1, 2]", "settings cannot be used"),
-        ("maps", 'shape: "a\\0b"', "cannot be used"),
+        ("maps", 'shape: "a\\0b"', r"no shape model a\x00b"),
         ("edit-maps", "melanin_add: " + "x" * 5000, "melanin_add is a number"),
     ],
 )
