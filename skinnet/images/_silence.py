@@ -8,7 +8,7 @@ from contextlib import suppress
 from functools import cache
 from tempfile import TemporaryFile
 
-from PIL import _imaging  # type: ignore[attr-defined]
+from PIL import _imaging
 
 _LOGGERS = ("PIL", "tifffile")
 _LIBRAW = (b"unknown file: ",)
