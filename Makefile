@@ -6,7 +6,7 @@ READY := .venv/.ready
 # Compiled modules are kept: tests start many processes, and each would compile the package again.
 unexport PYTHONDONTWRITEBYTECODE
 
-.PHONY: demo test coverage test-fast test-lowest lint format bench docs runtime wheel audit clean
+.PHONY: demo test coverage fuzz test-fast test-lowest lint format bench docs runtime wheel audit clean
 
 demo: $(READY)
 	$(BIN)/python -m train fit --config configs/quick.yaml
@@ -21,6 +21,11 @@ test: $(READY) runtime
 # The lines that no test runs; tracing takes twice the time of the tests.
 coverage: $(READY) runtime
 	$(BIN)/python -m pytest -n 2 --cov --cov-report=term:skip-covered
+
+# An hour of damaged and hostile inputs; each fault is printed with the command that shows it again.
+MINUTES ?= 60
+fuzz: $(READY)
+	$(BIN)/python -m benchmarks.faults --minutes $(MINUTES) --seed $(or $(SEED),$(shell date +%s))
 
 test-fast: $(READY) runtime
 	$(BIN)/python -m pytest -n 2 --dist worksteal -m "not slow"

@@ -39,6 +39,18 @@ def _explain_fault(error: OSError, usual: str = "check the path") -> str:
     return f"({error.strerror or error}); {remedy}"
 
 
+def _clip(text: object, longest: int = 60) -> str:
+    """What a file or a user has given, as a part of a sentence: one line, and not too long."""
+    line = " ".join(str(text).split())
+    return line if len(line) <= longest else f"{line[:longest]}..."
+
+
+def _name_error(error: BaseException) -> str:
+    """Name an error, with the start of its message; some repeat the whole input."""
+    text = _clip(error, 120)
+    return f"{type(error).__name__}: {text}" if text else type(error).__name__
+
+
 def _check_count(name: str, value: int, least: int = 0) -> None:
     """Raise `InputError` unless a setting is a whole number that is not too small."""
     if not value >= least:

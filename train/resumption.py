@@ -7,7 +7,7 @@ from typing import Any
 from lightning import LightningModule
 from torch import Tensor
 
-from skinnet.errors import InputError
+from skinnet.errors import InputError, _name_error
 from skinnet.network import read_checkpoint
 
 _STATES = ("pytorch-lightning_version", "epoch", "global_step", "loops", "optimizer_states")
@@ -79,7 +79,7 @@ def _compare_optimizer(states: Any, model: LightningModule) -> Iterator[str]:
                 if kept and kept[number][name].shape != shape:
                     yield f"the optimizer's state of parameter {number} has another shape"
     except (KeyError, TypeError, ValueError, AttributeError, IndexError) as error:
-        yield f"the state of its optimizer is damaged ({error!r})"
+        yield f"the state of its optimizer is damaged ({_name_error(error)})"
 
 
 def _write(values: list[int]) -> str:

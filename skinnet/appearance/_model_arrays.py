@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 from skinnet._version import __version__
 from skinnet.appearance._principal import PrincipalComponents
 from skinnet.appearance.colour import SkinColour
-from skinnet.errors import InputError, _explain_fault
+from skinnet.errors import InputError, _clip, _explain_fault
 from skinnet.files import write_atomically
 from skinnet.files._content import describe_content, explain_format
 from skinnet.files._npz import read_npz
@@ -78,6 +78,8 @@ def build_statistics(
         raise make_damage_error(path)
     if mean.shape != basis.shape[1:] or not mean.dtype == basis.dtype == np.float32:
         raise make_damage_error(path)
+    if not variances.dtype.kind == scales.dtype.kind == "f":
+        raise make_damage_error(path)
     try:
         if not all(np.isfinite(array).all() for array in (mean, variances, scales)):
             raise make_damage_error(path)
@@ -127,9 +129,10 @@ def make_damage_error(path: Path) -> InputError:
 def _check_header(path: Path, kind: str, header: dict[str, Any]) -> None:
     if header["format"] != MODEL_FORMAT:
         raise InputError(
-            f"{path} has format {header['format']}, and this skinnet reads format {MODEL_FORMAT}; "
+            f"{path} has format {_clip(header['format'])}, and this skinnet reads format "
+            f"{MODEL_FORMAT}; "
             "make it again with this version, or use the one that wrote it "
             f"({explain_format(header['format'], MODEL_FORMAT, header.get('skinnet'))})."
         )
     if header["kind"] != kind:
-        raise InputError(f"{path} is a {header['kind']}, and a {kind} is needed.")
+        raise InputError(f"{path} is a {_clip(header['kind'])}, and a {kind} is needed.")

@@ -205,10 +205,15 @@ class JointModel(nn.Module):
         header, arrays = _model_arrays.read_arrays(path, cls.__name__, names)
         statistics = _model_arrays.build_statistics(path, header, arrays)
         deviations = arrays["deviations"]
-        if deviations.ndim != 1 or len(deviations) > len(statistics.mean.T):
+        if deviations.ndim != 1 or deviations.dtype.kind != "f":
+            raise _model_arrays.make_damage_error(path)
+        if not np.isfinite(deviations).all() or len(deviations) > len(statistics.mean.T):
             raise _model_arrays.make_damage_error(path)
         try:
-            return cls(statistics, deviations, float(header["weight"]))
+            weight = float(header["weight"])
+            if not 0 < weight < np.inf:
+                raise _model_arrays.make_damage_error(path)
+            return cls(statistics, deviations, weight)
         except _model_arrays.ARCHIVE_ERRORS as error:
             raise _model_arrays.make_damage_error(path) from error
 

@@ -5,6 +5,7 @@ import zipfile
 from pathlib import Path
 
 from skinnet._version import __version__
+from skinnet.errors import _clip
 
 _PHOTOGRAPHS = "skinnet predict and skinnet edit take photographs as the input"
 
@@ -81,10 +82,10 @@ def explain_format(found: object, known: int, version: object) -> str:
         known: The format that is read here.
         version: The version that wrote the file; None where the file does not say.
     """
-    who = f"skinnet {version}" if version else "another version of skinnet"
+    who = f"skinnet {_clip(version)}" if version else "another version of skinnet"
     wrote = f"{who} wrote it, and this is skinnet {__version__}"
     text = str(found)
     if text.isdecimal() and int(text) > known:
         return f"{wrote}: pip install -U skinnet"
     known_here = version in (None, __version__)
-    return wrote if known_here else f'{wrote}: pip install "skinnet=={version}"'
+    return wrote if known_here else f'{wrote}: pip install "skinnet=={_clip(version)}"'

@@ -20,7 +20,7 @@ MOST_TEXT = 10_000_000
 
 READ_ERRORS = (
     *(OSError, SyntaxError, ValueError, EOFError, TypeError, RuntimeError, MemoryError),
-    *(ArithmeticError, LookupError, AttributeError, struct.error, zlib.error),
+    *(ArithmeticError, LookupError, AttributeError, AssertionError, struct.error, zlib.error),
 )
 """What readers of pictures, meshes and arrays raise on damaged files."""
 

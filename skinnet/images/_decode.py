@@ -15,6 +15,7 @@ from skinnet.images._kind import HEIF, OTHER, PICTURE, RAW, Kind, identify
 from skinnet.images._metadata import keep_metadata
 from skinnet.images._pixels import read_pixels
 from skinnet.images._raw.raw_file import read_raw
+from skinnet.images._silence import silence_libraries
 from skinnet.images.picture import Picture
 
 MAX_PIXELS = 100_000_000
@@ -39,6 +40,7 @@ _RAW_PHOTOMETRICS = (32803, 34892)
 
 def decode_file(file: BinaryIO | BytesIO, name: str, upright: bool = True) -> Picture:
     """Decode an open picture file; `upright` applies the orientation that EXIF states."""
+    silence_libraries()
     data = file.read()
     if not data:
         raise InputError(f"{name} is empty (0 bytes); was it copied completely?")

@@ -7,6 +7,7 @@ import struct
 import warnings
 import zlib
 from collections.abc import Iterator
+from contextlib import suppress
 from importlib.util import find_spec
 from io import BufferedIOBase, BytesIO
 from pathlib import Path
@@ -20,6 +21,7 @@ from skinnet.files._reading import read_file
 from skinnet.images._chunks import SIGNATURE
 from skinnet.images._decode import PHOTO_FORMATS
 from skinnet.images._kind import is_heif
+from skinnet.images._silence import silence_libraries
 
 PROCESSING_SOFTWARE = 0x000B
 """EXIF tag that holds the line of an edited photograph's mark."""
@@ -93,15 +95,16 @@ def read_mark(source: _Source) -> Mark | None:
     Returns:
         The mark; None if the file carries none or cannot be read.
     """
-    try:
+    silence_libraries()
+    with warnings.catch_warnings(), suppress(*READ_ERRORS):
+        warnings.simplefilter("ignore")  # of damaged metadata
         if not isinstance(source, str | Path):
             return _read_and_rewind(source)
         if not Path(source).is_file():  # a pipe would wait for its writer
             return None
         with open(source, "rb") as file:
             return _read_open(file) or _read_neighbour(Path(source))
-    except READ_ERRORS:
-        return None
+    return None
 
 
 def read_summary(path: Path) -> dict[str, Any] | None:
@@ -192,13 +195,11 @@ def _read_exif(file: BinaryIO | BufferedIOBase) -> Mark | None:
     file.seek(0)
     Image.init()
     formats = [known for known in PHOTO_FORMATS if known in Image.OPEN]
-    with warnings.catch_warnings():
-        warnings.simplefilter("ignore")
-        try:
-            image = Image.open(file, formats=formats)  # type: ignore[arg-type]
-            return _find_line(image.getexif()) or parse_mark(image.info.get("comment"))
-        except (Image.DecompressionBombError, *READ_ERRORS):
-            return None
+    try:
+        image = Image.open(file, formats=formats)  # type: ignore[arg-type]
+        return _find_line(image.getexif()) or parse_mark(image.info.get("comment"))
+    except (Image.DecompressionBombError, *READ_ERRORS):
+        return None
 
 
 def _read_heif(file: BinaryIO | BufferedIOBase) -> Mark | None:

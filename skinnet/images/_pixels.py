@@ -126,6 +126,8 @@ def _from_pillow(image: Image.Image, name: str, upright: bool) -> Pixels:
             f"{name} has pixels of Pillow's mode {image.mode}, whose white is not known; "
             "save it as 8-bit or 16-bit sRGB."
         )
+    if image.mode in ("P", "PA") and image.palette is None:
+        raise ValueError("it has no palette")
     plain = image.convert(_STRAIGHT[image.mode]) if image.mode in _STRAIGHT else image
     alpha = None
     if plain.has_transparency_data:

@@ -58,7 +58,16 @@ def _keep(own: list[png.Chunk], picture: Picture) -> list[png.Chunk]:
     elif picture.colour_space.known_from not in ("ICC profile", "cICP chunk"):
         dropped |= {b"iCCP"}  # it does not fit the pixels
     texts = _XMP_KEYS | _RAW_EXIF
-    return [each for each in own if each[0] not in dropped and png.read_key(each) not in texts]
+    return [
+        each
+        for each in own
+        if _may_be_copied(each[0]) and each[0] not in dropped and png.read_key(each) not in texts
+    ]
+
+
+def _may_be_copied(name: bytes) -> bool:
+    """Whether the name of a chunk is four letters, of which the first says that it is optional."""
+    return name.isalpha() and name[:1].islower()
 
 
 def _states_colours(picture: Picture, names: set[bytes]) -> bool:

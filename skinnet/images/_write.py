@@ -1,5 +1,6 @@
 """Pictures to files of any format, and in words what a format cannot hold."""
 
+import warnings
 from collections.abc import Callable
 from dataclasses import replace
 from importlib.util import find_spec
@@ -179,7 +180,9 @@ def write_picture(
     """
     target, name = find_format(path), name or str(path)
     fitted, notes = _fit_pixels(picture.as_colour(), target, name)
-    carried = carry(fitted, mark, target.in_exif, str(path))
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore")  # Pillow warns of odd metadata
+        carried = carry(fitted, mark, target.in_exif, str(path))
     carried, lost = _fit_metadata(carried, target)
     lost += _list_left(picture, target)
     if lost:

@@ -49,5 +49,5 @@ def refuse_other_export(encoder: OnnxModel, decoder: OnnxModel) -> None:
 
 
 def _quote(value: object) -> str:
-    text = str(value)
+    text = " ".join(str(value).split())
     return f'"{text}"' if len(text) <= 80 else f'"{text[:60]} ... {text[-20:]}"'

@@ -10,7 +10,7 @@ import numpy as np
 import onnxruntime
 from numpy.typing import NDArray
 
-from skinnet.errors import InputError
+from skinnet.errors import InputError, _clip, _name_error
 from skinnet.files._content import explain_format
 from skinnet.images._arguments import check_path
 from skinnet.inference._onnx_header import Header
@@ -190,12 +190,13 @@ def _check_metadata(path: Path, kind: str, header: Header) -> None:
     if found != ONNX_FORMAT:
         advice = explain_format(found, int(ONNX_FORMAT), metadata.get("skinnet.version"))
         raise InputError(
-            f"{path} has format {found}, and this skinnet reads format {ONNX_FORMAT}; export it "
-            f"again with this version, or use the one that wrote it ({advice})."
+            f"{path} has format {_clip(found)}, and this skinnet reads format {ONNX_FORMAT}; "
+            f"export it again with this version, or use the one that wrote it ({advice})."
         )
     if actual != kind:
         raise InputError(
-            f"{path} is {_with_article(actual)}, but {_with_article(kind)} is needed; {REMEDY}."
+            f"{path} is {_with_article(_clip(actual))}, but {_with_article(kind)} is needed; "
+            f"{REMEDY}."
         )
 
 
@@ -211,7 +212,8 @@ def _check_names(path: Path, kind: str, session: onnxruntime.InferenceSession) -
         found = ", ".join(sorted(inputs | optional))
         raise InputError(
             f"{path} is labelled as {_with_article(kind)}, but its inputs are "
-            f"{found} and its outputs {', '.join(sorted(outputs))}; {REMEDY}."
+            f"{_clip(found, 300)} and its outputs {_clip(', '.join(sorted(outputs)), 300)}; "
+            f"{REMEDY}."
         )
 
 
@@ -232,17 +234,26 @@ def _read_metadata(
             metadata["skinnet.trained_on"],
             metadata["skinnet.optics"],
             size,
-            tuple(json.loads(metadata["skinnet.lights"])),
+            _read_names(metadata["skinnet.lights"]),
             {name: _read_output_info(outputs[name]) for name in maps},
             _read_pair(metadata["skinnet.region_share"]),
         )
     except (KeyError, ValueError, TypeError, AttributeError) as error:
-        raise InputError(f"The metadata of {path} is damaged ({error!r}); {REMEDY}.") from error
+        raise InputError(
+            f"The metadata of {path} is damaged ({_name_error(error)}); {REMEDY}."
+        ) from error
 
 
 def _read_output_info(entry: Mapping[str, Any]) -> OutputInfo:
     low, high = entry["range"]
     return OutputInfo(str(entry["unit"]), (float(low), float(high)), str(entry["description"]))
+
+
+def _read_names(text: str) -> tuple[str, ...]:
+    names = json.loads(text)
+    if not isinstance(names, list) or not all(isinstance(name, str) for name in names):
+        raise TypeError(f"the lights are {names!r:.60}")
+    return tuple(names)
 
 
 def _read_pair(text: str) -> tuple[float, float]:

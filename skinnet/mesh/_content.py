@@ -3,6 +3,8 @@
 from dataclasses import replace
 from pathlib import Path
 
+import numpy as np
+
 from skinnet.mesh._gltf.content import read_gltf
 from skinnet.mesh._mesh_parts import (
     MeshContent,
@@ -38,7 +40,9 @@ def read_content(path: Path, given: Texture | None = None, textured: bool = True
         InputError: For a file that is missing, of another kind, damaged, or without triangles.
     """
     check_mesh_file(path)
-    return _READERS[path.suffix.lower()](path, given, textured)
+    # Numbers that are too large are refused in words, and need no warning.
+    with np.errstate(over="ignore", invalid="ignore"):
+        return _READERS[path.suffix.lower()](path, given, textured)
 
 
 def join_parts(path: Path, content: MeshContent) -> Mesh:

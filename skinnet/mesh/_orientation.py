@@ -85,5 +85,6 @@ def is_inside_out(vertices: _Vertices, triangles: _Triangles) -> bool:
     """Tell whether the normals of a closed or open surface point inwards on average."""
     vectors = compute_area_vectors(vertices, triangles)
     centres = vertices[triangles].mean(1)
-    middle = np.average(centres, 0, np.linalg.norm(vectors, axis=1))
+    areas = np.linalg.norm(vectors, axis=1)
+    middle = np.average(centres, 0, areas if areas.any() else None)
     return float((vectors * (centres - middle)).sum()) < 0

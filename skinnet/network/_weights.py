@@ -13,7 +13,7 @@ from safetensors.torch import save
 from torch import Tensor
 
 from skinnet._version import __version__
-from skinnet.errors import InputError
+from skinnet.errors import InputError, _clip
 from skinnet.files import READ_ERRORS, write_atomically
 from skinnet.files._content import describe_content, explain_format
 from skinnet.network._earlier_weights import EARLIER_FORMAT
@@ -126,8 +126,8 @@ def _name_versions(version: object) -> str:
 def make_format_error(path: str | Path, found: object, version: object) -> InputError:
     """Make the error for weights of another format."""
     return InputError(
-        f"{path} has format {found}, this skinnet reads {WEIGHTS_FORMAT}; train it again with this "
-        "version, or use the one that wrote it "
+        f"{path} has format {_clip(found)}, this skinnet reads {WEIGHTS_FORMAT}; train it again "
+        "with this version, or use the one that wrote it "
         f"({explain_format(found, WEIGHTS_FORMAT, version)})."
     )
 

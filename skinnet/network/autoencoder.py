@@ -10,7 +10,7 @@ from jaxtyping import Float
 from kornia.color import rgb_to_linear_rgb
 from torch import Tensor, nn
 
-from skinnet.errors import InputError
+from skinnet.errors import InputError, _clip
 from skinnet.network._earlier_weights import EARLIER_FORMAT, upgrade_config, upgrade_weights
 from skinnet.network._known_capture import KNOWN_VALUES, KnownCapture
 from skinnet.network._tone_factors import find_factors, measure_tone
@@ -181,6 +181,14 @@ class Reading(NamedTuple):
     uncertainty: Uncertainty
 
 
+_MOST_LEVELS, _WIDEST, _LARGEST_SIZE = 8, 1024, 4096
+"""Sizes of networks, beyond which a file would fill the memory before its weights are compared."""
+
+
+def _is_count(value: Any, most: int) -> bool:
+    return isinstance(value, int) and not isinstance(value, bool) and 1 <= value <= most
+
+
 @dataclass(frozen=True)
 class AutoencoderConfig:
     """Configuration of a `SkinAutoencoder`.
@@ -191,12 +199,37 @@ class AutoencoderConfig:
         working_size: Longer side, in pixels, of the crops that the weights are trained on.
         white_balance_max: Largest error of the white balance that is estimated, in natural
             logarithms, beyond what is known of it.
+
+    Raises:
+        InputError: If a value is out of range, or no number.
     """
 
     optics: str = "measured"
     widths: tuple[int, ...] = WIDTHS
     working_size: int = 128
     white_balance_max: float = WHITE_BALANCE_MAX
+
+    def __post_init__(self) -> None:
+        levels = isinstance(self.widths, tuple) and 1 <= len(self.widths) <= _MOST_LEVELS
+        if not levels or not all(_is_count(width, _WIDEST) for width in self.widths):
+            raise InputError(
+                f"widths are 1 to {_MOST_LEVELS} whole numbers from 1 to {_WIDEST:,}; got "
+                f"{_clip(self.widths)}."
+            )
+        if not _is_count(self.working_size, _LARGEST_SIZE):
+            raise InputError(
+                f"working_size is a whole number of pixels from 1 to {_LARGEST_SIZE:,}; got "
+                f"{_clip(self.working_size)}."
+            )
+        largest = self.white_balance_max
+        if (
+            isinstance(largest, bool)
+            or not isinstance(largest, int | float)
+            or not 0 <= largest < 9
+        ):
+            raise InputError(
+                f"white_balance_max is a number from 0, in logarithms; got {_clip(largest)}."
+            )
 
 
 class SkinAutoencoder(nn.Module):

@@ -42,8 +42,32 @@ def load_fit(path: Path) -> Registration:
         file = read_npz(path)
         pose = Similarity(file["rotation"], float(file["scale"]), file["translation"])
         arrays = {name: file[name] for name in _ARRAYS}
-        stages = json.loads(str(file["stages"]))
-        record = tuple(StageRecord(**{**one, "rms": tuple(one["rms"])}) for one in stages)
-        return Registration(pose, **arrays, millimetres=float(file["millimetres"]), record=record)
+        record = tuple(map(_read_stage, json.loads(str(file["stages"]))))
+        millimetres = float(file["millimetres"])
+        _check_arrays({"rotation": pose.rotation, "translation": pose.translation, **arrays})
+        if not record or not all(0 < each < np.inf for each in (pose.scale, millimetres)):
+            raise ValueError("it has no stage, or a scale that is none")
+        return Registration(pose, **arrays, millimetres=millimetres, record=record)
     except ARCHIVE_ERRORS as error:
         raise InputError(f"{path} is no fitted shape; make it with skinnet fit-shape.") from error
+
+
+def _read_stage(stage: dict[str, Any]) -> StageRecord:
+    rms = tuple(float(value) for value in stage["rms"])
+    counts = int(stage["vertices"]), int(stage["modes"])
+    return StageRecord(*counts, rms, bool(stage["converged"]))
+
+
+def _check_arrays(arrays: Mapping[str, np.ndarray]) -> None:
+    """Raise `ValueError` for arrays that are not finite numbers, or do not fit together."""
+    count = len(arrays["distances"])
+    shapes = {"rotation": (3, 3), "translation": (3,), "alpha": (arrays["alpha"].size,)}
+    shapes |= {"vertices": (count, 3), "distances": (count,), "kept": (count,)}
+    for name, array in arrays.items():
+        kind = "b" if name == "kept" else "f"
+        if array.shape != shapes[name] or array.dtype.kind != kind:
+            raise ValueError(f"{name} is {list(array.shape)} {array.dtype}")
+        if not np.isfinite(array).all():
+            raise ValueError(f"{name} has values that are no numbers")
+    if not arrays["kept"].any():
+        raise ValueError("no vertex was fitted")

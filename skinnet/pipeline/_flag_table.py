@@ -69,7 +69,7 @@ def _complete_switches(parser: VerbParser, arguments: list[str]) -> list[str]:
         for flag in action.option_strings
         if action.nargs == "?" and action.metavar == SWITCH
     }
-    following = [*arguments[1:], ""]
+    following = [*arguments, ""][1:]
     return [
         f"{word}=true" if word in switches and after not in ("true", "false") else word
         for word, after in zip(arguments, following, strict=True)

@@ -8,14 +8,15 @@ from pathlib import Path
 from typing import Any, NoReturn
 
 import yaml
-from jsonargparse import ArgumentParser, get_loader, set_dumper, set_loader
+from jsonargparse import ArgumentParser, Namespace, get_loader, set_dumper, set_loader
 
-from skinnet.errors import InputError
+from skinnet.errors import InputError, _clip, _name_error
 from skinnet.files._reading import read_stream
 from skinnet.files._settings import MOST_SETTINGS, check_yaml, parse_settings, read_settings
 from skinnet.pipeline._sentences import write_sentence
 
 _MODE = "bounded yaml"
+_LONGEST = 800
 _SETTINGS = (".yaml", ".yml", ".json")
 
 
@@ -80,6 +81,42 @@ class SentenceParser(ArgumentParser):
             raise InputError(
                 f"A file that the settings name is not text in UTF-8 ({error}); save it as UTF-8."
             ) from error
+        except InputError:
+            raise
+        except (ValueError, OverflowError, RecursionError) as error:  # of a value, such as a path
+            raise InputError(
+                f"A value of the settings cannot be used ({_name_error(error)}); correct it."
+            ) from error
+
+    def instantiate(self, namespace: Namespace, *more: Any, **kwargs: Any) -> Namespace:
+        """Make the objects that settings describe.
+
+        Args:
+            namespace: Parsed settings.
+            *more: As jsonargparse takes them.
+            **kwargs: As jsonargparse takes them.
+
+        Raises:
+            InputError: A setting has a value of another kind, such as a list where settings of a
+                group are needed, or none.
+        """
+        self._check_given(namespace)
+        try:
+            made: Namespace = super().instantiate(namespace, *more, **kwargs)
+            return made
+        except TypeError as error:
+            raise InputError(
+                f"The settings cannot be used ({_name_error(error)}); compare them with what "
+                f"{self.help_command or f'{self.prog} --help'} lists."
+            ) from error
+
+    def _check_given(self, namespace: Namespace) -> None:
+        """Raise `InputError` for a setting without a value, which jsonargparse lets pass."""
+        for key, usual in self.get_defaults().items():
+            if usual is not None and namespace.get(key, usual) is None:
+                raise InputError(
+                    f"{key} has no value (null); give one, or leave it out for {_clip(usual)}."
+                )
 
     def error(self, message: str, ex: Exception | None = None) -> NoReturn:
         """Raise `InputError` with the message on one line.
@@ -96,9 +133,14 @@ class SentenceParser(ArgumentParser):
             if re.search(rf"""(?:['"]|--|: )(?:\w+\.)*{re.escape(old)}(?=[.'"=\s]|$)""", message):
                 raise InputError(f"'{old}' is now called '{new}'; use the new name.") from ex
         keys = [each.dest for each in self._actions]
-        sentence = write_sentence(" ".join(message.split()), self.prog, keys)
+        sentence = _shorten(write_sentence(" ".join(message.split()), self.prog, keys))
         help_command = self.help_command or f"{self.prog} --help"
         raise InputError(f"{sentence} ({help_command} lists the flags)") from ex
+
+
+def _shorten(sentence: str) -> str:
+    """Shorten a sentence that repeats a value of any length."""
+    return sentence if len(sentence) <= _LONGEST else f"{sentence[:200]} ... {sentence[-100:]}"
 
 
 def _list_settings(arguments: Sequence[str]) -> Iterator[str]:

@@ -17,10 +17,11 @@ from scipy.io import loadmat, whosmat
 from scipy.io.matlab import MatReadError
 from scipy.spatial import cKDTree
 
-from skinnet.errors import InputError
+from skinnet.errors import InputError, _name_error
 from skinnet.files import READ_ERRORS
 from skinnet.files._npz import check_size
 from skinnet.mesh._orientation import is_inside_out
+from skinnet.shape._model_numbers import to_floats, to_indices
 from skinnet.shape.model import ShapeModel
 
 _LANDMARKS = {
@@ -55,16 +56,18 @@ def load_basel_2009(path: Path) -> ShapeModel:
     try:
         check_size(path, sum(8 * math.prod(shape) for _, shape, _ in whosmat(path)))
         arrays = loadmat(path, variable_names=names)
-        mean, modes, deviations, triangles = (np.asarray(arrays[name]) for name in names)
+        mean, modes, deviations = (to_floats(arrays[name]) for name in names[:3])
+        triangles = to_indices(arrays["tl"]) - 1
     except InputError:
         raise
     except (MatReadError, *READ_ERRORS) as error:
         raise InputError(
             f"{path} is not a Basel Face Model of 2009, whose .mat holds {', '.join(names)} "
-            f"({error!r}); give 01_MorphableModel.mat."
+            f"({_name_error(error)}); give 01_MorphableModel.mat."
         ) from error
-    variances = np.square(deviations.astype(np.float64).ravel())
-    return _build_model(path, mean, modes, variances, triangles.astype(np.int64) - 1, {}, 1e-3)
+    with np.errstate(over="ignore"):
+        variances = np.square(deviations.astype(np.float64).ravel())
+    return _build_model(path, mean, modes, variances, triangles, {}, 1e-3)
 
 
 def load_basel_2017(path: Path) -> ShapeModel:
@@ -79,22 +82,22 @@ def load_basel_2017(path: Path) -> ShapeModel:
         with h5py.File(path, "r") as file:
             check_size(path, _count_bytes(file))
             mean, modes, variances = (
-                np.asarray(file[f"shape/model/{name}"])
+                to_floats(file[f"shape/model/{name}"])
                 for name in ("mean", "pcaBasis", "pcaVariance")
             )
-            cells = np.asarray(file["shape/representer/cells"]).astype(np.int64)
+            cells = to_indices(file["shape/representer/cells"])
             points = _read_landmarks(file)
     except InputError:
         raise
     except READ_ERRORS as error:
         raise InputError(
             f"{path} is not a Basel Face Model of 2017 or 2019, whose .h5 holds shape/model/mean, "
-            f"pcaBasis, pcaVariance and shape/representer/cells ({error!r})."
+            f"pcaBasis, pcaVariance and shape/representer/cells ({_name_error(error)})."
         ) from error
     triangles = cells.T if cells.shape[:1] == (3,) else cells
-    return _build_model(
-        path, mean, modes, variances.astype(np.float64).ravel(), triangles, points, 1.0
-    )
+    with np.errstate(invalid="ignore"):
+        variances = variances.astype(np.float64).ravel()
+    return _build_model(path, mean, modes, variances, triangles, points, 1.0)
 
 
 def _count_bytes(file: h5py.File) -> int:
@@ -112,14 +115,15 @@ def _build_model(
     points: dict[str, list[float]],
     millimetres: float,
 ) -> ShapeModel:
-    if mean.size % 3 or modes.ndim != 2 or len(modes) != mean.size:
+    fits = modes.ndim == 2 and modes.size and len(modes) == mean.size and mean.size % 3 == 0
+    if not fits:
         raise InputError(
             f"{path} is not a usable shape model: its mean has {mean.size:,} numbers and "
             f"its basis is {list(modes.shape)}."
         )
     basis = np.ascontiguousarray(modes.T, np.float64)
     # Statismo before 0.9 multiplied the columns by the standard deviations.
-    with np.errstate(invalid="ignore"):
+    with np.errstate(invalid="ignore", over="ignore"):
         basis /= np.maximum(np.linalg.norm(basis, axis=1, keepdims=True), 1e-300)
     model = ShapeModel.from_arrays(
         mean.astype(np.float64).reshape(-1, 3),

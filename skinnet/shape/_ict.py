@@ -13,12 +13,13 @@ from typing import Any
 import numpy as np
 from jaxtyping import Float
 
-from skinnet.errors import InputError
+from skinnet.errors import InputError, _name_error
 from skinnet.files._reading import MOST_TEXT, read_file
 from skinnet.mesh._content import join_parts, read_content
 from skinnet.mesh._obj import read_obj_positions
 from skinnet.mesh._seams import match_positions, merge_coordinates
 from skinnet.shape._ibug import name_ibug_point
+from skinnet.shape._model_numbers import to_floats, to_indices
 from skinnet.shape.model import ShapeModel
 
 NEUTRAL = "generic_neutral_mesh.obj"
@@ -34,12 +35,12 @@ def read_ict_arrays(path: Path, arrays: Mapping[str, Any], whole: bool = False) 
     With `whole` the head with its eyes and teeth, otherwise the face. Raises `InputError` if the
     arrays do not belong together.
     """
-    modes = np.asarray(arrays["id_modes"], np.float64)
-    triangles = np.asarray(arrays["tris"], np.int64)
-    uv = np.asarray(arrays["uv"], np.float64)
-    uv_triangles = np.asarray(arrays["tris_uv"], np.int64)
+    modes = to_floats(arrays["id_modes"]).astype(np.float64, copy=False)
+    triangles = to_indices(arrays["tris"])
+    uv = to_floats(arrays["uv"]).astype(np.float64, copy=False)
+    uv_triangles = to_indices(arrays["tris_uv"])
     model = ShapeModel.from_arrays(
-        np.asarray(arrays["verts"], np.float64),
+        to_floats(arrays["verts"]).astype(np.float64, copy=False),
         modes,
         np.ones(len(modes)),
         triangles,
@@ -53,6 +54,8 @@ def read_ict_arrays(path: Path, arrays: Mapping[str, Any], whole: bool = False) 
     uv, uv_triangles = merge_coordinates(triangles, uv, uv_triangles)
     model = replace(model, uv=uv, uv_triangles=uv_triangles)
     count = int(arrays["face_vertex_count"])
+    if not 0 < count <= len(model.mean):
+        raise InputError(f"{path} states a face of {count:,} of {len(model.mean):,} vertices.")
     return model if whole else _crop_to_face(model, np.arange(len(model.mean)) < count)
 
 
@@ -105,7 +108,7 @@ def _read_landmarks(path: Path, index: np.ndarray) -> dict[str, int]:
         return _name_landmarks([place[vertex] for vertex in listed])
     except (ValueError, LookupError, TypeError) as error:
         raise InputError(
-            f"{path} has no usable landmarks ({error!r}); copy it again, or remove it."
+            f"{path} has no usable landmarks ({_name_error(error)}); copy it again, or remove it."
         ) from error
 
 
@@ -119,4 +122,7 @@ def _crop_to_face(model: ShapeModel, keep: np.ndarray) -> ShapeModel:
         own = (model.uv[model.uv_triangles] <= 1).all((1, 2))
         triangles, uv_triangles = model.triangles[own], model.uv_triangles[own]
         model = replace(model, triangles=triangles, uv_triangles=uv_triangles)
-    return model.crop(keep)
+    face = model.crop(keep)
+    if not len(face.triangles):
+        raise InputError(f"{model.name} has no triangle of a face; copy it again.")
+    return face

@@ -8,7 +8,7 @@ from typing import Any
 from xml.parsers import expat
 from xml.parsers.expat import ExpatError
 
-from skinnet.errors import InputError
+from skinnet.errors import InputError, _name_error
 from skinnet.files import READ_ERRORS
 from skinnet.files._reading import MOST_TEXT, read_file
 
@@ -48,7 +48,9 @@ def parse_landmark_file(path: Path) -> Mapping[str, Any]:
     except InputError as error:
         raise InputError(f"{path} cannot be used: {error}.") from error
     except (*READ_ERRORS, ExpatError) as error:
-        raise InputError(f"{path} is damaged or of another layout ({error!r}).") from error
+        raise InputError(
+            f"{path} is damaged or of another layout ({_name_error(error)})."
+        ) from error
 
 
 def _parse_ljson(document: Mapping[str, Any]) -> dict[str, list[float]]:
@@ -109,8 +111,8 @@ def _number_points(labelled: list[tuple[str, list[Any]]]) -> dict[str, list[floa
     elif len(everything) == 68:
         pairs = list(enumerate(everything))
     else:
-        names = ", ".join(label for label, _ in labelled)
-        raise InputError(f"its labels ({names}) are not those of a face")
+        names = ", ".join(str(label) for label, _ in labelled)
+        raise InputError(f"its labels ({names:.100}) are not those of a face")
     return {
         str(number): [float(value) for value in point if value is not None]
         for number, point in pairs
@@ -125,7 +127,7 @@ def _parse_csv(text: bytes) -> dict[str, list[float]]:
     named = {}
     for row in rows:
         if len(row) != 4:
-            raise InputError(f"the line {','.join(row)!r} is not name,x,y,z")
+            raise InputError(f"the line {','.join(row)!r:.60} is not name,x,y,z")
         named[row[0]] = [float(value) for value in row[1:]]
     return named
 

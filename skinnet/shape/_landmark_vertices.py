@@ -34,8 +34,8 @@ def read_landmark_vertices(path: Path, vertex_count: int) -> dict[str, int]:
 
 def check_vertex(path: Path, name: str, value: Any, count: int) -> int:
     """Refuse a number that is no vertex among `count`."""
-    if not isinstance(value, int) or not 0 <= value < count:
+    if not isinstance(value, int) or isinstance(value, bool) or not 0 <= value < count:
         raise InputError(
-            f"{path}: {name} is vertex {value!r}, and vertices go from 0 to {count - 1:,}."
+            f"{path}: {name:.60} is vertex {value!r:.60}, and vertices go from 0 to {count - 1:,}."
         )
     return value

@@ -79,10 +79,13 @@ def _locate(path: Path, name: str, value: Any, mesh: Mesh | None) -> Float[np.nd
             mesh.vertices[check_vertex(path, name, value, len(mesh.vertices))], np.float64
         )
     if isinstance(value, int):
-        raise InputError(f"{path} gives {name} as the number of a vertex; give the mesh too.")
-    if not isinstance(value, Sequence) or len(value) != 3:
-        raise InputError(f"{path}: {name} is {value!r}, and three coordinates are needed.")
+        raise InputError(f"{path} gives {name:.60} as the number of a vertex; give the mesh too.")
+    if not isinstance(value, Sequence) or isinstance(value, str) or len(value) != 3:
+        raise InputError(f"{path}: {name:.60} is {value!r:.60}, and three coordinates are needed.")
     try:
-        return np.array([float(number) for number in value])
-    except (TypeError, ValueError) as error:
-        raise InputError(f"{path}: {name} is {value!r}, which are not numbers.") from error
+        point = np.array([float(number) for number in value])
+    except (TypeError, ValueError, OverflowError) as error:
+        raise InputError(f"{path}: {name:.60} is {value!r:.60}, which are not numbers.") from error
+    if not np.isfinite(point).all():
+        raise InputError(f"{path}: {name:.60} is {value!r:.60}, which is no place on a face.")
+    return point

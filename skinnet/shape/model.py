@@ -1,5 +1,6 @@
 """A statistical shape model: faces in correspondence as a mean and linear modes."""
 
+import math
 from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
 
@@ -95,7 +96,7 @@ class ShapeModel:
             fault = f"a variance is {variances.min():.3g}, and none is negative"
         if not fault and outside:
             fault = f"landmark {outside[0]} is vertex {known[outside[0]]} of {len(mean):,}"
-        if not fault and not millimetres > 0:
+        if not fault and not 0 < millimetres < math.inf:
             fault = f"its unit is {millimetres} millimetres"
         if fault:
             raise InputError(f"{name} is not a usable shape model: {fault}.")

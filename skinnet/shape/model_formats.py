@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 
-from skinnet.errors import InputError
+from skinnet.errors import InputError, _clip, _name_error
 from skinnet.files import READ_ERRORS, write_atomically
 from skinnet.files._content import explain_format
 from skinnet.files._npz import read_npz
@@ -16,6 +16,7 @@ from skinnet.shape._basel import load_basel_2009, load_basel_2017
 from skinnet.shape._default_model import build_default_model
 from skinnet.shape._ict import NEUTRAL, load_ict_folder, read_ict_arrays
 from skinnet.shape._landmark_vertices import read_landmark_vertices
+from skinnet.shape._model_numbers import to_floats, to_indices
 from skinnet.shape._registered_files import load_registered_meshes
 from skinnet.shape.model import ShapeModel
 
@@ -155,31 +156,29 @@ def _load_npz(path: Path) -> ShapeModel:
         raise
     except (LookupError, ValueError, TypeError) as error:
         raise InputError(
-            f"{path} is not a complete shape model ({error!r}); copy it again."
+            f"{path} is not a complete shape model ({_name_error(error)}); copy it again."
         ) from error
 
 
 def _read_own(path: Path, arrays: Mapping[str, Any]) -> ShapeModel:
     if str(arrays[_KEY]) != VERSION:
         raise InputError(
-            f"{path} has version {arrays[_KEY]}, and this skinnet reads version {VERSION}; "
+            f"{path} has version {_clip(arrays[_KEY])}, and this skinnet reads version {VERSION}; "
             "make it again with this version, or use the one that wrote it "
             f"({explain_format(arrays[_KEY], int(VERSION), None)})."
         )
-    names, vertices = arrays["landmark_names"].tolist(), arrays["landmark_vertices"].tolist()
+    names, vertices = (
+        arrays["landmark_names"].tolist(),
+        to_indices(arrays["landmark_vertices"]).tolist(),
+    )
     return ShapeModel.from_arrays(
-        _to_floats(arrays["mean"]),
-        _to_floats(arrays["basis"]),
-        _to_floats(arrays["variances"]),
-        arrays["triangles"].astype(np.int64),
-        _to_floats(arrays["uv"]) if "uv" in arrays else None,
-        arrays["uv_triangles"].astype(np.int64) if "uv_triangles" in arrays else None,
+        to_floats(arrays["mean"]),
+        to_floats(arrays["basis"]),
+        to_floats(arrays["variances"]),
+        to_indices(arrays["triangles"]),
+        to_floats(arrays["uv"]) if "uv" in arrays else None,
+        to_indices(arrays["uv_triangles"]) if "uv_triangles" in arrays else None,
         dict(zip(names, vertices, strict=True)),
         float(arrays["millimetres"]),
         str(path),
     )
-
-
-def _to_floats(array: np.ndarray) -> np.ndarray:
-    """Convert to float64; a float32 basis stays float32, to save memory."""
-    return array if array.dtype == np.float32 else array.astype(np.float64)

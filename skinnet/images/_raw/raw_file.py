@@ -17,6 +17,7 @@ from skinnet.images._raw.colours import (
 )
 from skinnet.images._raw.exif_block import read_raw_exif
 from skinnet.images._shot import read_shot
+from skinnet.images._silence import silence_libraw
 from skinnet.images._tiff_structure import find_sensor_end
 from skinnet.images.colour_space import ColourSpace
 from skinnet.images.picture import Picture
@@ -56,7 +57,7 @@ def read_raw(data: bytes, name: str, largest: int, upright: bool = True) -> Pict
     """
     rawpy = _import_rawpy(name)
     try:
-        with rawpy.RawPy() as raw:
+        with silence_libraw, rawpy.RawPy() as raw:
             raw.open_buffer(BytesIO(data))
             _check(raw, name, largest)
             raw.unpack()

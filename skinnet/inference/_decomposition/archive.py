@@ -1,5 +1,6 @@
 """The file of a decomposition: all of it, with its photograph, exactly."""
 
+import math
 from collections.abc import Mapping
 from os import PathLike
 from pathlib import Path
@@ -144,7 +145,12 @@ def _restore_uncertainty(record: Any, file: ArrayFile) -> Uncertainty:
     melanin, hemoglobin = (
         file.read(f"log_sd_{name}", (None, None), "float32") for name in PIGMENTS
     )
+    if not melanin.size or melanin.shape != hemoglobin.shape:
+        raise ValueError(f"the uncertainty is of {list(melanin.shape)} pixels")
     (face, other_face), (share, other_share) = record
+    numbers = [float(each) for each in (face, other_face, share, other_share)]
+    if not all(0 <= each < math.inf for each in numbers):
+        raise ValueError(f"the uncertainty is {numbers}")
     return Uncertainty(melanin, hemoglobin, (face, other_face), (share, other_share))
 
 

@@ -84,7 +84,7 @@ class ArrayFile:
         """Read an array of a shape, in which None is any size, and a type.
 
         Raises:
-            ValueError: It has another shape or type, or is damaged.
+            ValueError: It has another shape or type, is damaged, or holds NaN or infinite values.
             KeyError: There is none of this name.
         """
         found = self.types[name]
@@ -98,7 +98,10 @@ class ArrayFile:
             content = member.read(found.size + 1)
         if len(content) != found.size:
             raise ValueError(f"{name} is cut short")
-        return np.frombuffer(content, found.dtype).reshape(found.shape).copy()
+        values = np.frombuffer(content, found.dtype).reshape(found.shape).copy()
+        if found.dtype.kind == "f" and not np.isfinite(values).all():
+            raise ValueError(f"{name} has values that are NaN or infinite")
+        return values
 
 
 def open_arrays(path: Path) -> zipfile.ZipFile:

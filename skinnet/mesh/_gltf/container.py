@@ -9,7 +9,7 @@ from pathlib import Path
 from typing import Any
 from urllib.parse import unquote_to_bytes
 
-from skinnet.errors import InputError
+from skinnet.errors import InputError, _clip
 from skinnet.files._reading import read_file
 from skinnet.mesh._foreign_name import describe_absence, find_foreign_file
 from skinnet.mesh._gltf.extensions import check_required, refuse_compression
@@ -202,8 +202,8 @@ def _check_version(path: Path, document: dict[str, Any]) -> None:
 
 def _other_version(path: Path, version: str) -> InputError:
     return InputError(
-        f"{path} is glTF {version}, and only glTF 2.0 is read; convert it (gltf-pipeline does), "
-        "or export it again."
+        f"{path} is glTF {_clip(version)}, and only glTF 2.0 is read; convert it (gltf-pipeline "
+        "does), or export it again."
     )
 
 

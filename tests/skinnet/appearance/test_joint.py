@@ -93,3 +93,14 @@ def test_people_that_do_not_match_are_refused() -> None:
         JointModel.fit(alphas, betas, DEVIATIONS, weight=-1.0)
     with pytest.raises(InputError, match="9 components were asked for, and 8 subjects span 7"):
         JointModel.fit(alphas, betas, DEVIATIONS, components=9)
+
+
+@pytest.mark.parametrize(
+    ("name", "value"), [("deviations", np.ones(3) * 1j), ("deviations", np.array([1, np.nan, 1]))]
+)
+def test_a_changed_array_is_refused(tmp_path: Path, name: str, value: np.ndarray) -> None:
+    JointModel.fit(*people(), DEVIATIONS).save(tmp_path / "a.npz")
+    with np.load(tmp_path / "a.npz") as file:
+        np.savez(tmp_path / "a.npz", **dict(file) | {name: value})
+    with pytest.raises(InputError, match="is not a complete file of skinnet's"):
+        JointModel.load(tmp_path / "a.npz")

@@ -1,9 +1,13 @@
 """Formats of results and what they hold; tests/reports compares whole files."""
 
+import struct
+import zlib
+from io import BytesIO
 from pathlib import Path
 
 import numpy as np
 import pytest
+from picture_files import make_photo
 from PIL import Image
 
 from skinnet.errors import InputError
@@ -168,3 +172,16 @@ def test_messages_name_the_file_as_they_are_told(tmp_path: Path) -> None:
     deep = Picture("a", GREY.astype(np.uint16))
     (said,) = write_picture(tmp_path / "a.jpg", deep, name="standard output")
     assert said.startswith("standard output has 8 bits a channel")
+
+
+def test_chunks_of_no_known_form_are_left_out(tmp_path: Path) -> None:
+    """Viewers refuse files with other chunks whose names say that they are needed."""
+    file = BytesIO()
+    Image.fromarray(make_photo()).save(file, "PNG")
+    data, chunks = file.getvalue(), b""
+    for name in (b"\x14\xc0\xb7D", b"NEED", b"okAy"):
+        chunks += struct.pack(">I", 1) + name + b"x" + struct.pack(">I", zlib.crc32(name + b"x"))
+    path = tmp_path / "a.png"
+    write_picture(path, read_picture(data[:-12] + chunks + data[-12:]))
+    assert b"okAy" in path.read_bytes() and b"NEED" not in path.read_bytes()
+    np.testing.assert_array_equal(read_picture(path).srgb, make_photo())

@@ -2,7 +2,6 @@
 
 from pathlib import Path
 
-import numpy as np
 import onnx
 import pytest
 from onnx import TensorProto, helper
@@ -47,11 +46,8 @@ def test_any_cut_is_seen_or_leaves_no_set_of_operators(tmp_path: Path) -> None:
         assert not complete or len(header.metadata) < 9, length
 
 
-def test_noise_is_no_onnx_file(tmp_path: Path) -> None:
-    rng, path = np.random.default_rng(0), tmp_path / "a.onnx"
-    for _ in range(300):
-        path.write_bytes(rng.bytes(200))
-        assert read_header(path) is None
+def test_a_few_bytes_are_no_onnx_file(tmp_path: Path) -> None:
+    path = tmp_path / "a.onnx"
     for content in (b"", b"\x08", b"\x08\x00", b"\xff" * 99, b"\x12\x03abc", b"\x0a\x00"):
         path.write_bytes(content)
         assert read_header(path) is None

@@ -140,3 +140,16 @@ def test_what_is_no_photograph_is_refused(
 ) -> None:
     with pytest.raises(InputError, match=words):
         SkinAutoencoder.encode.__wrapped__(model, photograph)
+
+
+@pytest.mark.parametrize(
+    "values",
+    [
+        *({"widths": widths} for widths in ((), (0, 4), (4, 10**6), (8,) * 20)),
+        *({"working_size": size} for size in (0, 10**6, True)),
+        *({"white_balance_max": largest} for largest in (-1.0, float("nan"), float("inf"))),
+    ],
+)
+def test_a_network_of_no_size_is_refused(values: dict[str, object]) -> None:
+    with pytest.raises(InputError, match=f"{next(iter(values))} .*; got "):
+        AutoencoderConfig(**values)  # type: ignore[arg-type]

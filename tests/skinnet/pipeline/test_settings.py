@@ -92,3 +92,20 @@ def test_settings_within_settings(tmp_path: Path, refused: Callable[..., str]) -
     outer = tmp_path / "outer.yaml"
     outer.write_text(f"fit: {tmp_path / 'inner.yaml'}\n")
     assert "not text in UTF-8" in refused("maps", "--config", outer, "a.obj")
+
+
+@pytest.mark.parametrize(
+    ("verb", "text", "said"),
+    [
+        ("build-model", "appearance: {share: null}", "appearance.share has no value"),
+        ("fit-shape", "fit: [1, 2]", "settings cannot be used"),
+        ("maps", 'shape: "a\\0b"', r"no shape model a\x00b"),
+        ("edit-maps", "melanin_add: " + "x" * 5000, "melanin_add is a number"),
+    ],
+)
+def test_a_setting_of_another_kind(
+    verb: str, text: str, said: str, tmp_path: Path, refused: Callable[..., str]
+) -> None:
+    (tmp_path / "a.yaml").write_text(text)
+    sentence = refused(verb, tmp_path / "absent", "--config", tmp_path / "a.yaml")
+    assert said in sentence and len(sentence) < 1500

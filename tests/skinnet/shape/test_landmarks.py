@@ -167,3 +167,21 @@ def test_left_is_left_and_up_is_up_on_a_real_scan(shared_data: Path) -> None:
     down = ["nose_bridge", "nose_tip", "nose_base", "mouth_top", "lips_upper", "mouth_bottom"]
     assert [y[name] for name in down] == sorted((y[name] for name in down), reverse=True)
     assert y["chin"] < y["mouth_bottom"] and max(z, key=z.get) == "nose_tip"
+
+
+@pytest.mark.parametrize(
+    "place", ["123", [1, 2, float("nan")], [1, 2, 1e999], [10**400, 0, 0], True]
+)
+def test_a_place_is_three_finite_numbers(tmp_path: Path, place: object) -> None:
+    path = write_file(tmp_path / "a.json", {"nose_tip": place})
+    with pytest.raises(InputError, match=r"nose_tip is .*(coordinates|numbers|no place|vertex)"):
+        read_landmarks(path, dome())
+
+
+def test_what_a_file_holds_is_not_repeated_at_length(tmp_path: Path) -> None:
+    (tmp_path / "a.csv").write_bytes(b"chin,1,2,3\n" * 500 + b"\xff")
+    write_file(tmp_path / "b.json", {"x" * 5000: "y" * 5000})
+    for name in ("a.csv", "b.json"):
+        with pytest.raises(InputError) as caught:
+            read_landmarks(tmp_path / name)
+        assert len(str(caught.value)) < 500

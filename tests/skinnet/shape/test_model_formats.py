@@ -272,3 +272,48 @@ def test_ict_facekit_loads_as_the_face(shared_data: Path) -> None:
     assert at["nose_tip"][2] > at["chin"][2] and at["nose_bridge"][1] > at["chin"][1]
     assert not is_inside_out(model.mean, model.triangles)
     assert is_inside_out(model.mean, flip_triangles(model.triangles, np.ones(18460, bool)))
+
+
+@pytest.mark.parametrize(
+    ("name", "value"),
+    [
+        ("mean", lambda mean: mean + 1j),
+        ("variances", lambda variances: np.array(["1", "2", "3"])),
+        ("basis", lambda basis: basis[:0]),
+        ("triangles", lambda triangles: triangles + 0.5),
+        ("triangles", lambda triangles: np.where(triangles == 0, np.nan, triangles)),
+        ("landmark_vertices", lambda vertices: vertices + 0.5),
+        ("millimetres", lambda unit: np.array(np.inf)),
+    ],
+)
+def test_arrays_of_another_kind_are_refused(
+    tmp_path: Path, name: str, value: Callable[[Any], Any]
+) -> None:
+    path = tmp_path / "m.npz"
+    arrays = own_arrays(path)
+    write_npz(path, arrays | {name: value(arrays[name])})
+    with pytest.raises(InputError, match=r"m\.npz is not a (complete|usable) shape model"):
+        load_shape_model(path)
+
+
+@pytest.mark.parametrize(
+    "change",
+    [
+        {"shapePC": np.zeros((0, 3)), "shapeMU": np.zeros((0, 1))},
+        {"shapePC": np.zeros((189, 0)), "shapeEV": np.zeros((0, 1))},
+        {"tl": np.full((96, 3), np.nan)},
+        {"shapeEV": np.full((3, 1), 1e300)},
+        {"shapeEV": np.full((3, 1), 1j)},
+    ],
+)
+def test_a_damaged_basel_model_is_refused(tmp_path: Path, change: dict[str, Any]) -> None:
+    savemat(tmp_path / "a.mat", basel_2009(small_model()) | change)
+    with pytest.raises(InputError, match=r"a\.mat is not a (usable shape model|Basel Face Model)"):
+        load_shape_model(tmp_path / "a.mat")
+
+
+def test_a_model_without_areas_has_no_inside(tmp_path: Path) -> None:
+    flat = basel_2017(small_model())
+    flat["shape/model/mean"] = np.zeros_like(flat["shape/model/mean"])
+    write_h5(tmp_path / "a.h5", flat)
+    assert not load_shape_model(tmp_path / "a.h5").mean.any()
