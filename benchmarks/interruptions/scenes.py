@@ -57,7 +57,7 @@ def _scans(size: str, seed: str) -> Callable[[Path, Path], list[Command]]:
         return [
             (_SKINNET, "maps", *scans, "-o", str(maps), *fit),
             (_SKINNET, "build-model", str(maps), "-o", str(model), *some),
-            (_SKINNET, "sample", str(model), "-n", "1", "-o", str(output / "faces")),
+            (_SKINNET, "sample", str(model / "hybrid.npz"), "-n", "1", "-o", str(output / "faces")),
             (_SKINNET, "edit-maps", str(maps / "a_maps.npz"), *face),
         ]
 
