@@ -14,10 +14,10 @@ from benchmarks.interruptions.scenes import SCENES, Scene
 from benchmarks.interruptions.trials import Trial, run_trials
 
 COUNTS = {
-    "training": {KILL: 2, FULL: 1, READ_ONLY: 1},
-    "predict": {KILL: 2, FULL: 1, READ_ONLY: 1},
-    "edit": {KILL: 1, FULL: 1, READ_ONLY: 1},
-    "scans": {KILL: 1, FULL: 1},
+    "training": {KILL: 2, FULL: 1},
+    "predict": {KILL: 1, FULL: 1, READ_ONLY: 1},
+    "edit": {FULL: 1},
+    "scans": {KILL: 1},
 }
 """Number of faults of each kind: few, since each runs the commands of a scene twice."""
 
