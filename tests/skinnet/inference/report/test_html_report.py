@@ -206,7 +206,7 @@ def test_without_the_flag_nothing_is_written(tmp_path: Path) -> None:
 def test_an_interrupt_writes_what_was_read(
     run: Run, folder: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    add, done = FaceReport.add, list[int]()
+    add, done = FaceReport.add_rows, list[int]()
 
     def interrupt(self: FaceReport, *arguments: object) -> None:
         if done:
@@ -214,7 +214,7 @@ def test_an_interrupt_writes_what_was_read(
         add(self, *arguments)  # type: ignore[arg-type]
         done.append(1)
 
-    monkeypatch.setattr(FaceReport, "add", interrupt)
+    monkeypatch.setattr(FaceReport, "add_rows", interrupt)
     path = tmp_path / "faces.html"
     code, _, said = run("predict", folder, "-o", tmp_path / "maps", "--report", path)
     assert code == 130 and f"Interrupted. {path} has the 1 faces that were read." in said
