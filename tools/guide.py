@@ -18,6 +18,7 @@ from mkdocs.structure.pages import Page
 ROOT = Path(__file__).parents[1]
 OUTSIDE = {
     "CONTRIBUTING.md": "contributing.md",
+    "SECURITY.md": "security.md",
     "skinnet/inference/models/MODEL_CARD.md": "model-card.md",
     "skinnet/inference/models/CHANGELOG.md": "model-changes.md",
     "demo/astronaut.png": "demo/astronaut.png",

@@ -9,12 +9,21 @@ os.environ.setdefault("OMP_WAIT_POLICY", "PASSIVE")
 
 def run() -> int:
     """Run the training command or print its help; without the extra, print a sentence."""
+    try:
+        return _run()
+    except KeyboardInterrupt:
+        return 130
+
+
+def _run() -> int:
     from skinnet.errors import InputError
     from skinnet.inference._messages import open_missing_streams, quit_at_interrupt
-    from train.usage import answer
 
     open_missing_streams()
     try:
+        with quit_at_interrupt():
+            from train.usage import answer
+
         text = answer(sys.argv[1:])
     except InputError as error:
         print(f"train: {error}", file=sys.stderr)
@@ -33,8 +42,6 @@ def run() -> int:
         sentence = _explain_missing(error, "train", "python -m train", '-e ".[train]"')
         print(f"train: {sentence}", file=sys.stderr)
         return 2
-    except KeyboardInterrupt:
-        return 130
 
 
 if __name__ == "__main__":

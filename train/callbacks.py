@@ -2,6 +2,7 @@
 
 import sys
 import time
+from io import BytesIO
 from pathlib import Path
 from typing import Any
 
@@ -35,8 +36,10 @@ class WholeCheckpoints(TorchCheckpointIO):
         """Write a checkpoint beside its place, and rename it."""
         target = Path(path)
         target.parent.mkdir(parents=True, exist_ok=True)
+        content = BytesIO()  # torch's own writer does not say that a disk is full
+        torch.save(checkpoint, content)
         with write_atomically(target) as part:
-            torch.save(checkpoint, part)
+            part.write_bytes(content.getbuffer())
 
 
 class LastCheckpoint(Callback):

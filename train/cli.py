@@ -35,7 +35,7 @@ from train.callbacks import (
 from train.fitted import FittedFaces
 from train.flags import check_flags, check_trainer, describe_no_step
 from train.guards import FiniteGuard
-from train.logs import CurveLogger, EventLogger
+from train.logs import CurveLogger, EventLogger, hush_writers
 from train.monitors import check_monitors, list_logged
 from train.pairs import PortraitPairs
 from train.portraits import Portraits
@@ -246,7 +246,8 @@ def main(arguments: Sequence[str] | None = None) -> int:
     try:
         level, given = take_verbosity(given)
         given += _apply_verbosity(level)
-        with warnings.catch_warnings(), explain_refusals(lambda e: write_refusal(e, {}, [])):
+        refusals = explain_refusals(lambda error: write_refusal(error, {}, []))
+        with warnings.catch_warnings(), hush_writers(), refusals:
             for message in _EXPECTED_WARNINGS:
                 warnings.filterwarnings("ignore", message)
             SkinCLI(

@@ -1,13 +1,20 @@
 """Writes loss curves: to one growing CSV file, and as events of TensorBoard."""
 
 import csv
-from collections.abc import Callable
+import io
+import os
+import threading
+from collections.abc import Callable, Iterable, Iterator, Sequence
+from contextlib import contextmanager
 from pathlib import Path
 from typing import Any
 
 from lightning.pytorch.loggers import Logger, TensorBoardLogger
 from lightning.pytorch.loggers.logger import DummyLogger
 from lightning.pytorch.utilities import rank_zero_only
+
+_LINE = 4096
+"""Bytes within which a line of a curve ends."""
 
 
 class CurveLogger(Logger):
@@ -53,14 +60,48 @@ class CurveLogger(Logger):
         self._write()
 
     def _write(self) -> None:
-        new = not self.path.exists()
         self.path.parent.mkdir(parents=True, exist_ok=True)
-        with self.path.open("a", newline="") as file:
-            writer = csv.writer(file, lineterminator="\n")
-            if new:
-                writer.writerow(("step", "metric", "value"))
-            writer.writerows(self.held)
+        with self.path.open("a+b", 0) as file:
+            size = _end_of_lines(file)
+            file.truncate(size)  # a full disk leaves a part of a line
+            rows = self.held if size else [("step", "metric", "value"), *self.held]
+            try:
+                data = memoryview(_format(rows))
+                while data:
+                    data = data[file.write(data) :]
+            except OSError as error:
+                file.truncate(size)
+                error.filename = str(self.path)
+                raise
         self.held = []
+
+
+def _end_of_lines(file: io.FileIO) -> int:
+    """Where the last whole line of a file ends."""
+    size = file.seek(0, os.SEEK_END)
+    file.seek(max(size - _LINE, 0))
+    end = file.read().rfind(b"\n")
+    return max(size - _LINE, 0) + end + 1
+
+
+def _format(rows: Iterable[Sequence[object]]) -> bytes:
+    text = io.StringIO()
+    csv.writer(text, lineterminator="\n").writerows(rows)
+    return text.getvalue().encode()
+
+
+@contextmanager
+def hush_writers() -> Iterator[None]:
+    """Keep from standard error what threads print of a disk that cannot be written.
+
+    TensorBoard writes in a thread, and raises its error in the main one too.
+    """
+    usual = threading.excepthook
+    threading.excepthook = lambda args: None if isinstance(args.exc_value, OSError) else usual(args)
+    try:
+        yield
+    finally:
+        threading.excepthook = usual
 
 
 class EventLogger(TensorBoardLogger):

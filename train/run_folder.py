@@ -9,6 +9,7 @@ from lightning import Callback, LightningModule, Trainer
 
 from skinnet.errors import InputError, _explain_fault
 from skinnet.files import write_text
+from skinnet.files._partial import sweep
 from train.logs import CurveLogger, EventLogger
 from train.portraits import Portraits, write_skipped
 
@@ -96,6 +97,7 @@ def check_run_folder(folder: str, checkpoint: str | None) -> None:
     run = Path(folder)
     if run.exists() and not run.is_dir():
         raise InputError(f"{run} is not a folder; give another one with --run.")
+    sweep(run)
     if continues_run(folder, checkpoint):
         check_writable(run, "another folder with --run")
     else:
@@ -123,7 +125,9 @@ def _check_previous(run: Path) -> bool:
     run = run.resolve()
     if not run.is_dir() or not any(run.iterdir()):
         return False
-    if not any(next(run.glob(name), None) for name in RUN_FILES):
+    names = {entry.name for entry in run.iterdir() if not entry.name.startswith(".skinnet-")}
+    killed_at_once = names <= {"config.yaml"}
+    if not killed_at_once and not any(next(run.glob(name), None) for name in RUN_FILES):
         raise InputError(
             f"{run} holds files that are not those of a run; give another folder with --run."
         )

@@ -24,7 +24,7 @@ def write_photographs(folder: Path, count: int = 3) -> None:
         Image.fromarray(pixels.astype(np.uint8)).save(folder / f"{'abcdefgh'[index]}.png")
 
 
-def write_scans(folder: Path, count: int = 2) -> None:
+def write_scans(folder: Path, count: int = 3) -> None:
     """Write textured faces of the procedural model with their landmarks, in mm."""
     folder.mkdir(parents=True)
     model = load_shape_model()

@@ -57,7 +57,7 @@ def _scans(size: str, seed: str) -> Callable[[Path, Path], list[Command]]:
         return [
             (_SKINNET, "maps", *scans, "-o", str(maps), *fit),
             (_SKINNET, "build-model", str(maps), "-o", str(model), *some),
-            (_SKINNET, "sample", str(model), "-n", "1", "-o", str(output / "faces")),
+            (_SKINNET, "sample", str(model / "hybrid.npz"), "-n", "1", "-o", str(output / "faces")),
             (_SKINNET, "edit-maps", str(maps / "a_maps.npz"), *face),
         ]
 
@@ -98,6 +98,14 @@ def _resume_training(inputs: Path, output: Path) -> list[Command]:
     return _train(5, *([f"--ckpt_path={last}"] if moved and last.exists() else []))(inputs, output)
 
 
+def _write_photographs(inputs: Path) -> None:
+    write_photographs(inputs / "photos")
+
+
+def _write_scans(inputs: Path) -> None:
+    write_scans(inputs / "scans")
+
+
 SCENES = (
     Scene(
         "training",
@@ -109,13 +117,11 @@ SCENES = (
     ),
     Scene(
         "predict",
-        lambda folder: write_photographs(folder / "photos"),
+        _write_photographs,
         _predict("--no-detail"),
         _predict(),
         check=lambda output: read_rows(output / "faces.csv"),
     ),
-    Scene("edit", lambda folder: write_photographs(folder / "photos"), _edit("1.2"), _edit("1.5")),
-    Scene(
-        "scans", lambda folder: write_scans(folder / "scans"), _scans("32", "1"), _scans("48", "2")
-    ),
+    Scene("edit", _write_photographs, _edit("1.2"), _edit("1.5")),
+    Scene("scans", _write_scans, _scans("32", "1"), _scans("48", "2")),
 )

@@ -16,6 +16,8 @@ from skinnet.appearance.colour import CHANNELS, SkinColour
 from skinnet.appearance.skin_texture import SkinTexture
 from skinnet.errors import InputError
 from skinnet.files._content import explain_format
+from skinnet.files._npz import map_npy
+from skinnet.files._reading import MOST_TEXT, read_file
 
 _FEATURES, _MASKS, _STATE = "features.npy", "masks.npy", "stack.json"
 
@@ -155,7 +157,7 @@ class SubjectStack:
         Returns:
             The memory-mapped array.
         """
-        return np.asarray(np.load(self.folder / name, mmap_mode="r"))
+        return np.asarray(map_npy(self.folder / name))
 
 
 class _StackBlocks:
@@ -220,7 +222,7 @@ def open_stack(folder: Path) -> SubjectStack:
 def _read_state(folder: Path) -> dict[str, Any]:
     """Read the progress and description of a folder's stack."""
     try:
-        state = json.loads((folder / _STATE).read_text(encoding="utf-8"))
+        state = json.loads(read_file(folder / _STATE, MOST_TEXT))
     except (OSError, ValueError) as error:
         raise InputError(f"{folder} holds no stack of subjects ({error}).") from error
     state = state if isinstance(state, dict) else {}
@@ -237,8 +239,6 @@ def _is_whole(folder: Path, subjects: int, size: int) -> bool:
     """Tell whether both arrays are there and have the shapes of so many subjects."""
     shapes = {_FEATURES: (subjects, len(CHANNELS), size**2), _MASKS: (subjects, size**2)}
     try:
-        return all(
-            np.load(folder / name, mmap_mode="r").shape == shape for name, shape in shapes.items()
-        )
-    except (OSError, ValueError, EOFError):
+        return all(map_npy(folder / name).shape == shape for name, shape in shapes.items())
+    except (OSError, ValueError):
         return False

@@ -8,7 +8,6 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-from numpy.lib.format import open_memmap
 
 from skinnet._version import __version__
 from skinnet.appearance.colour import CHANNELS, SkinColour
@@ -25,6 +24,7 @@ from skinnet.appearance.stack import (
 )
 from skinnet.errors import InputError
 from skinnet.files import write_text
+from skinnet.files._npz import allocate_npy, map_npy
 
 
 def write_stack(
@@ -118,23 +118,22 @@ def _read_progress(folder: Path, digest: str) -> tuple[int, int]:
 
 def _allocate(folder: Path, subjects: int, size: int) -> int:
     needed = subjects * size**2 * (4 * len(CHANNELS) + 1)
-    # A memory map on a full disk ends the process without a message.
     if needed > (free := shutil.disk_usage(folder).free):
         raise InputError(
             f"{subjects} subjects of {size} x {size} texels take {needed / 1e9:.1f} GB, and "
             f"{folder} has {free / 1e9:.1f} GB free; choose another disk."
         )
-    open_memmap(folder / _FEATURES, "w+", np.float32, (subjects, len(CHANNELS), size**2)).flush()
-    open_memmap(folder / _MASKS, "w+", bool, (subjects, size**2)).flush()
+    allocate_npy(folder / _FEATURES, np.float32, (subjects, len(CHANNELS), size**2))
+    allocate_npy(folder / _MASKS, bool, (subjects, size**2))
     return size
 
 
 def _write(folder: Path, index: int, texture: SkinTexture) -> None:
     rows = {_FEATURES: texture.features(), _MASKS: texture.mask.ravel()}
     for name, row in rows.items():
-        array = np.load(folder / name, mmap_mode="r+")
+        array = map_npy(folder / name, writable=True)
         array[index] = row
-        array.flush()
+        array.flush()  # type: ignore[attr-defined]
 
 
 def _compute_digest(names: list[str], colour: SkinColour, inputs: str) -> str:

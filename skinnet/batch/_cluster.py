@@ -6,9 +6,10 @@ import re
 import subprocess
 import sys
 from collections.abc import Iterator, Sequence
-from contextlib import contextmanager, redirect_stdout
+from contextlib import contextmanager, nullcontext, redirect_stdout
 from typing import Any, TextIO, cast
 
+from skinnet.batch._guard import end_together
 from skinnet.batch._job import Job
 from skinnet.batch._worker import Worker
 from skinnet.errors import InputError
@@ -47,16 +48,17 @@ def connect(address: str | None) -> Iterator[int]:
     if not own:
         _check_address(address)
     store = {"object_store_memory": _STORE, "include_dashboard": False} if own else {}
-    try:
-        with _hush():
-            ray.init(address, log_to_driver=False, logging_level=logging.ERROR, **store)
-    except (ConnectionError, RuntimeError, ValueError, OSError) as error:
-        raise InputError(_describe(address, str(error))) from error
-    with redirect_stdout(cast(TextIO, _Log())):
+    with end_together() if own else nullcontext():
         try:
-            yield max(1, int(ray.cluster_resources().get("CPU", 1)))
-        finally:
-            ray.shutdown()
+            with _hush():
+                ray.init(address, log_to_driver=False, logging_level=logging.ERROR, **store)
+        except (ConnectionError, RuntimeError, ValueError, OSError) as error:
+            raise InputError(_describe(address, str(error))) from error
+        with redirect_stdout(cast(TextIO, _Log())):
+            try:
+                yield max(1, int(ray.cluster_resources().get("CPU", 1)))
+            finally:
+                ray.shutdown()
 
 
 def import_ray() -> Any:

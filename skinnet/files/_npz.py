@@ -52,6 +52,54 @@ def read_npz(path: Path, names: Collection[str] | None = None) -> dict[str, NDAr
         raise ValueError(str(error) or type(error).__name__) from error
 
 
+def map_npy(path: Path, writable: bool = False) -> NDArray[Any]:
+    """Map the array of an .npy file into memory.
+
+    Args:
+        path: The file.
+        writable: Whether what is assigned to the array is written to the file.
+
+    Returns:
+        The array, of which nothing is read before it is used.
+
+    Raises:
+        InputError: It is no regular file.
+        ValueError: The file is damaged, no array, or holds Python objects.
+        OSError: As `open`.
+    """
+    try:
+        with open_file(path) as file:
+            _check_header(file, os.fstat(file.fileno()).st_size)
+        return npy.open_memmap(path, "r+" if writable else "r")
+    except _DAMAGES as error:
+        raise ValueError(str(error) or type(error).__name__) from error
+
+
+def allocate_npy(path: Path, dtype: type, shape: tuple[int, ...]) -> None:
+    """Make an .npy file of zeros that has all its room on the disk.
+
+    A file without its room ends the process without a message where a map of it is written to a
+    full disk.
+
+    Args:
+        path: The file.
+        dtype: Type of the array.
+        shape: Its shape.
+
+    Raises:
+        OSError: The disk is too full, and there is no such file now.
+    """
+    try:
+        npy.open_memmap(path, "w+", dtype, shape).flush()
+        if hasattr(os, "posix_fallocate"):
+            with path.open("rb+") as file:
+                os.posix_fallocate(file.fileno(), 0, os.fstat(file.fileno()).st_size)
+    except OSError as error:
+        path.unlink(missing_ok=True)
+        error.filename = str(path)
+        raise
+
+
 def check_size(path: Path, unpacked: int) -> None:
     """Refuse a file that unpacks to far more than it has.
 

@@ -75,15 +75,44 @@ def write_together() -> Iterator[Callable[[Path], Path]]:
             _keep_older(path, older)
             os.replace(part, path)
             renamed.append(path)
-    except BaseException:
-        for path in (*renamed, *parts.values()):
-            path.unlink(missing_ok=True)
-        for path, kept in older.items():
-            os.replace(kept, path)
-            kept.unlink(missing_ok=True)  # it stays where both are names of one file
+    except BaseException as error:
+        _take_back(renamed, parts, older)
+        if isinstance(error, OSError):
+            _name_target(error, parts)
         raise
     for kept in older.values():
         kept.unlink(missing_ok=True)
+
+
+def _take_back(renamed: list[Path], parts: dict[Path, Path], older: dict[Path, Path]) -> None:
+    """Remove what was written, as far as the disk lets us, and put older files back."""
+    for path in (*parts.values(), *(path for path in renamed if path not in older)):
+        with suppress(OSError):
+            path.unlink(missing_ok=True)
+    for path, kept in older.items():
+        with suppress(OSError):
+            os.replace(kept, path)
+            kept.unlink(missing_ok=True)  # it stays where both are names of one file
+
+
+def _name_target(error: OSError, parts: dict[Path, Path]) -> None:
+    """Have an error name a file as the user knows it; a full disk names none, or a partial one."""
+    targets = {str(part): str(path) for path, part in parts.items()}
+    name = str(error.filename) if error.filename is not None else ""
+    if parts and (not name or name in targets):
+        error.filename = targets.get(name, str(next(reversed(parts))))
+        error.filename2 = None
+
+
+def sweep(folder: Path) -> None:
+    """Remove the partial files that killed processes have left in a folder.
+
+    Whatever is written into a folder does so by itself.
+
+    Args:
+        folder: The folder; it need not exist.
+    """
+    _sweep(folder.absolute())
 
 
 def take_removed() -> list[Path]:

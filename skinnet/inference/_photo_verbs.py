@@ -99,15 +99,16 @@ def predict(options: argparse.Namespace) -> bool:
     workers, decomposer = _prepare(options, found)
     told = ToldCapture.from_options(options, decomposer, len(found.pictures))
     table, page = FaceTable(options.csv), FaceReport(_choose_report(options, found))
-    totals = run_over(
-        found,
-        _PredictRun(decomposer, options, told, page.path),
-        lambda name, error: _report_failure(table, page, name, error),
-        quiet=options.json,
-        take=lambda done: _take(done, table, page),
-        workers=workers,
-        one_folder=options.output is not None,
-    )
+    with page.finish_at_interrupt():
+        totals = run_over(
+            found,
+            _PredictRun(decomposer, options, told, page.path),
+            lambda name, error: _report_failure(table, page, name, error),
+            quiet=options.json,
+            take=lambda done: _take(done, table, page),
+            workers=workers,
+            one_folder=options.output is not None,
+        )
     for sentence in (*found.notes, *table.notes):
         note(sentence)
     total = describe_totals(totals, found, "read", _describe_place(found, options.output))

@@ -74,7 +74,7 @@ class SentenceParser(ArgumentParser):
             InputError: For an argument or a file that cannot be used.
         """
         for path in _list_settings(sys.argv[1:] if args is None else args):
-            _check_stream() if path == "-" else read_settings(path)
+            _check_stream() if path == "-" else _check_file(Path(path))
         try:
             return super().parse_args(args, *more, **kwargs)
         except UnicodeDecodeError as error:
@@ -155,6 +155,24 @@ def _list_settings(arguments: Sequence[str]) -> Iterator[str]:
         elif (given or path.lower().endswith(_SETTINGS)) and _exists(path):
             yield path
         before = argument
+
+
+def _check_file(path: Path, outer: tuple[Path, ...] = ()) -> None:
+    """Read a file of settings, and those that it names, as they are meant beside it."""
+    if path.resolve() in outer:
+        return
+    for name in _list_words(read_settings(path)):
+        beside = path.parent / name
+        if name.lower().endswith(_SETTINGS) and _exists(str(beside)):
+            _check_file(beside, (*outer, path.resolve()))
+
+
+def _list_words(value: Any) -> Iterator[str]:
+    if isinstance(value, str):
+        yield value
+    elif isinstance(value, dict | list):
+        for inner in value.values() if isinstance(value, dict) else value:
+            yield from _list_words(inner)
 
 
 def _check_stream() -> None:

@@ -3,7 +3,8 @@
 import os
 import shutil
 from base64 import b64encode
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Iterator, Sequence
+from contextlib import contextmanager
 from hashlib import sha256
 from html import escape
 from importlib.resources import files
@@ -18,6 +19,7 @@ from skinnet._version import __version__
 from skinnet.errors import InputError
 from skinnet.files import write_atomically
 from skinnet.inference._colour_scales import HEMOGLOBIN, MELANIN, SHADING
+from skinnet.inference._messages import note
 from skinnet.inference._report.face_row import COLUMNS, embed_picture, make_row, show_text
 from skinnet.inference._tiles import draw_scale
 from skinnet.inference._usual_values import describe_usual
@@ -78,6 +80,17 @@ class FaceReport:
         """Add a file that was not read."""
         if self.path is not None:
             self._failures.append((name, reason))
+
+    @contextmanager
+    def finish_at_interrupt(self) -> Iterator[None]:
+        """Write what there is, and say so, if Ctrl-C ends the block."""
+        try:
+            yield
+        except KeyboardInterrupt:
+            if self.path is not None:
+                self.finish("The run was interrupted. The photographs that were left are not here.")
+                note(f"Interrupted. {self.path} has the {self._count} faces that were read.")
+            raise
 
     def finish(self, total: str) -> None:
         """Write the page.

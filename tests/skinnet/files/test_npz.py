@@ -1,7 +1,9 @@
 """Archives of arrays are measured before they are read, and damage is a `ValueError`."""
 
+import errno
 import io
 import json
+import os
 import resource
 import subprocess
 import sys
@@ -13,7 +15,7 @@ import pytest
 
 from skinnet.appearance.maps_file import load_maps
 from skinnet.errors import InputError
-from skinnet.files._npz import check_zip, read_npz
+from skinnet.files._npz import allocate_npy, check_zip, map_npy, read_npz
 from skinnet.network import read_checkpoint
 from skinnet.shape import load_shape_model
 
@@ -140,3 +142,25 @@ def test_a_header_of_a_model_that_is_no_object(tmp_path: Path) -> None:
     np.savez(tmp_path / "a.npz", header=np.array(json.dumps([1])))
     with pytest.raises(InputError, match=r"a\.npz"):
         load_maps(tmp_path / "a.npz")
+
+
+def test_an_array_is_mapped_and_a_damaged_one_refused(tmp_path: Path) -> None:
+    path = tmp_path / "a.npy"
+    allocate_npy(path, np.float32, (2, 3))
+    map_npy(path, writable=True)[1] = 7
+    assert map_npy(path).tolist() == [[0, 0, 0], [7, 7, 7]]
+    whole = path.read_bytes()
+    for damaged in (whole[:-1], whole + b"0", whole[:20], b"", whole.replace(b"(2, 3)", b"((2, 3")):
+        path.write_bytes(damaged)
+        with pytest.raises(ValueError, match=r"\S"):
+            map_npy(path)
+
+
+def test_a_map_takes_its_room_at_once(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    def refuse(*_: object) -> None:
+        raise OSError(errno.ENOSPC, "No space left on device")
+
+    monkeypatch.setattr(os, "posix_fallocate", refuse, raising=False)
+    with pytest.raises(OSError, match=r"No space left on device: .*a\.npy"):
+        allocate_npy(tmp_path / "a.npy", bool, (9,))
+    assert not any(tmp_path.iterdir())

@@ -137,6 +137,18 @@ def test_a_full_disk_leaves_nothing(tmp_path: Path, monkeypatch: pytest.MonkeyPa
         raise OSError(errno.ENOSPC, "No space left on device", str(self))
 
     monkeypatch.setattr(Path, "write_text", fill)
-    with pytest.raises(OSError, match="No space left"):
+    with pytest.raises(OSError, match=r"No space left on device: '[^']*/a\.txt'"):
         write_text(tmp_path / "a.txt", "new")
     assert [path.read_bytes() for path in tmp_path.iterdir()] == [b"old"]
+
+
+def test_a_disk_that_refuses_removing_too_hides_no_error(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    def refuse(path: object, *_: object, **__: object) -> None:
+        raise OSError(errno.EROFS, "Read-only file system", str(path))
+
+    for name in ("replace", "link", "unlink"):
+        monkeypatch.setattr(os, name, refuse)
+    with pytest.raises(OSError, match=r"Read-only file system: '[^']*/a\.txt'"):
+        write_text(tmp_path / "a.txt", "new")

@@ -90,8 +90,12 @@ def test_values_on_the_command_line_are_bounded() -> None:
 def test_settings_within_settings(tmp_path: Path, refused: Callable[..., str]) -> None:
     (tmp_path / "inner.yaml").write_bytes(b"# \xff")
     outer = tmp_path / "outer.yaml"
-    outer.write_text(f"fit: {tmp_path / 'inner.yaml'}\n")
-    assert "not text in UTF-8" in refused("maps", "--config", outer, "a.obj")
+    for name in (tmp_path / "inner.yaml", "inner.yaml"):
+        outer.write_text(f"fit: {name}\n")
+        said = refused("maps", "--config", outer, "a.obj")
+        assert f"{tmp_path / 'inner.yaml'} is not text in UTF-8: line 1" in said
+    outer.write_text("fit: outer.yaml\n")  # without an end
+    refused("maps", "--config", outer, "a.obj")
 
 
 @pytest.mark.parametrize(

@@ -201,3 +201,21 @@ def test_without_the_flag_nothing_is_written(tmp_path: Path) -> None:
     page.add_failure("a", "b")
     page.finish("")
     assert names(tmp_path) == []
+
+
+def test_an_interrupt_writes_what_was_read(
+    run: Run, folder: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    add, done = FaceReport.add_rows, list[int]()
+
+    def interrupt(self: FaceReport, *arguments: object) -> None:
+        if done:
+            raise KeyboardInterrupt
+        add(self, *arguments)  # type: ignore[arg-type]
+        done.append(1)
+
+    monkeypatch.setattr(FaceReport, "add_rows", interrupt)
+    path = tmp_path / "faces.html"
+    code, _, said = run("predict", folder, "-o", tmp_path / "maps", "--report", path)
+    assert code == 130 and f"Interrupted. {path} has the 1 faces that were read." in said
+    assert "The run was interrupted." in read(path).text
