@@ -9,7 +9,7 @@ from tools.house import PACKAGE, ROOT, main, measure, read_floors
 
 def test_the_structure_stays_within_its_limits() -> None:
     found = measure(ROOT / PACKAGE, read_floors())
-    assert found["entries"] <= 17
+    assert found["entries"] <= 19
     assert found["public_definitions"] <= 150
     assert found["upward_imports"] == 0 and found["room_cycles"] == 0
     assert found["fully_annotated_share"] == 1

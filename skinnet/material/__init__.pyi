@@ -1,0 +1,3 @@
+from .mitsuba import MitsubaCapture as MitsubaCapture
+
+__all__ = ["MitsubaCapture"]
