@@ -64,7 +64,7 @@ def _make_class() -> type:
             self.optics = str(props.get("optics", "measured"))
             self.table = _make_table(self.optics)
             self.offset = props.get_unbounded_texture("offset", 0.0) if "offset" in props else None
-            spectra = props["offset_spectra"] if "offset_spectra" in props else None
+            spectra = str(props.get("offset_spectra", ""))
             self.spectra = None if self.offset is None else _make_spectra(spectra)
 
         def eval(self, si: Any, active: Any = True) -> Any:
@@ -141,9 +141,11 @@ def _compute_table(optics: str) -> Float32[np.ndarray, "mel blood wavelength 1"]
     return np.asarray(table.numpy()[..., None], np.float32)
 
 
-def _make_spectra(given: Any) -> Any:
+def _make_spectra(text: str) -> Any:
     """Spectra of red, green and blue of an offset; without them those of D65 and a mean camera."""
-    if given is None:
-        given = compute_offset_spectra(load_spectrum_to_srgb("D65", "mean").numpy())
-    rows = np.ascontiguousarray(np.array(given, np.float32).reshape(3, len(WAVELENGTHS)).T)
+    if text:
+        spectra = np.array(text.split(","), np.float32).reshape(3, len(WAVELENGTHS))
+    else:
+        spectra = compute_offset_spectra(load_spectrum_to_srgb("D65", "mean").numpy())
+    rows = np.ascontiguousarray(spectra.T, np.float32)
     return mi.Texture1f(mi.TensorXf(rows), wrap_mode=dr.WrapMode.Clamp)

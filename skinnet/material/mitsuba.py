@@ -26,8 +26,8 @@ class MitsubaCapture:
 
     Mitsuba traces light at single wavelengths. It knows nothing of our `SpectralCamera`, so that
     its pictures are an independent check of the paper's equation 1. The parts are dictionaries for
-    `mitsuba.load_dict`. A spectral variant must be set first, e.g. scalar_spectral, which needs
-    nothing else; llvm_ad_spectral is far faster and needs LLVM.
+    `mitsuba.load_dict`. A spectral variant must be set first: scalar_spectral needs nothing else.
+    The variants that compile, such as cuda_ad_spectral, are faster where they run.
 
     Args:
         light: Name or file of the light, as of `load_light`.
@@ -163,8 +163,8 @@ class MitsubaCapture:
         if offset is not None:
             if matrix is None:
                 matrix = load_spectrum_to_srgb("D65", "mean").numpy()
-            spectra = np.asarray(compute_offset_spectra(matrix), np.float32)
-            parts["offset_spectra"] = self._mitsuba.TensorXf(spectra)
+            spectra = compute_offset_spectra(matrix).ravel()
+            parts["offset_spectra"] = ",".join(f"{one:.9g}" for one in spectra)
         return {"type": PLUGIN, "optics": optics, **parts}
 
     def _make_texture(self, values: Float[np.ndarray, "height width channels"]) -> Any:
