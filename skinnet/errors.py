@@ -62,12 +62,14 @@ _SCANS = _TORCH | {"embreex", "h5py", "jsonargparse", "matplotlib", "scipy", "tr
 _EXTRAS = {
     "chart": frozenset({"colour", "colour_checker_detection", "cv2"}),
     "heif": frozenset({"pillow_heif"}),
+    "mitsuba": _TORCH | {"mitsuba"},
     "raw": frozenset({"rawpy"}),
     "video": frozenset({"av"}),
     "torch": _TORCH,
     "scans": _SCANS,
     "train": _SCANS | {"lightning", "rich", "tensorboard", "torchmetrics"},
     "export": _TORCH | {"onnx", "onnxscript"},
+    "usd": _SCANS | {"pxr"},
 }
 """Top modules that each extra brings, by the names that Python imports."""
 

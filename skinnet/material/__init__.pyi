@@ -1,1 +1,3 @@
-__all__: list[str] = []
+from .mitsuba import MitsubaCapture as MitsubaCapture
+
+__all__ = ["MitsubaCapture"]

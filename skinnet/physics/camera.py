@@ -203,16 +203,25 @@ def spectrum_to_srgb(
         >>> [round(value, 6) for value in white.tolist()]
         [1.0, 1.0, 1.0]
     """
+    balanced, to_srgb = _balance(light, sensitivity, observer)
+    if gain is not None:
+        balanced = balanced * gain[..., None, :]
+    return balanced @ to_srgb
+
+
+def _balance(
+    light: Float[Tensor, "*#batch wavelength"],
+    sensitivity: Float[Tensor, "*#batch wavelength 3"],
+    observer: Float[Tensor, "wavelength 3"],
+) -> tuple[Float[Tensor, "*batch wavelength 3"], Float[Tensor, "*batch 3 3"]]:
+    """Compute the matrices from a spectrum to balanced values, and from these to linear sRGB."""
     white = (light[..., None] * sensitivity).sum(-2, keepdim=True)
     sensitivity = sensitivity / white
     to_xyz = invert_3x3(sensitivity.mT @ sensitivity) @ (sensitivity.mT @ observer)  # M transposed
-    balanced = light[..., None] * sensitivity
-    if gain is not None:
-        balanced = balanced * gain[..., None, :]
     srgb = srgb_to_xyz().to(to_xyz)
     to_xyz = to_xyz * (srgb.sum(-1) / to_xyz.sum(-2, keepdim=True))
     to_srgb = to_xyz @ invert_3x3(srgb).mT
-    return balanced @ (to_srgb / to_srgb.sum(-2, keepdim=True))
+    return light[..., None] * sensitivity, to_srgb / to_srgb.sum(-2, keepdim=True)
 
 
 @cache

@@ -18,6 +18,9 @@ from skinnet.images._result_names import compute_digest, describe_input, is_inpu
 _HEAD = 4096
 """Bytes at the start of a mesh or a material in which its mark stands."""
 
+_INNER_MARK = b"tEXtskinnet\0"
+"""What stands before the mark of a PNG file."""
+
 _RECORD_END = "_shape.json"
 _OLD_MESHES = {"_face": "_maps.npz", "_shape": "_shape.npz"}
 """Ends of the names of meshes that are results, and of the archives beside them."""
@@ -127,6 +130,8 @@ def read_result_mark(path: Path) -> Mark | None:
         return parse_mark(_read_record(path).get("mark"))
     if path.suffix.lower() in (".obj", ".mtl"):
         return _read_comment(path)
+    if path.suffix.lower() in (".glb", ".usdz"):
+        return _read_inner_mark(path)
     return read_mark(path)
 
 
@@ -177,6 +182,15 @@ def _read_origin(path: Path) -> str:
         return str(read_npz(path, ["header"])["header"])
     except KeyError:
         return str(read_npz(path, ["origin"])["origin"])
+
+
+def _read_inner_mark(path: Path) -> Mark | None:
+    """Read the mark of the pictures in a GLB or USDZ file, which holds them as they are."""
+    try:
+        texts = read_file(path).split(_INNER_MARK)[1:]
+    except (OSError, InputError):
+        return None
+    return next((mark for text in texts if (mark := parse_mark(text[:_HEAD]))), None)
 
 
 def _read_comment(path: Path) -> Mark | None:

@@ -55,5 +55,12 @@ PIPELINE_VERBS = {
             ("skinnet edit-maps skinmaps/1_maps.npz --relight.yaw 30", "from its left"),
         ),
     ),
+    "export-face": PipelineVerb(
+        "write a fitted face as glTF or USD, with its maps as textures",
+        (
+            ("skinnet export-face skinmaps/1_maps.npz", "skinmaps/1_head.glb, for Blender"),
+            ("skinnet export-face skinmaps/1_maps.npz --format usdz", "the same as USD"),
+        ),
+    ),
 }
 """The verbs, in the order in which the help lists them."""

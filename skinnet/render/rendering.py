@@ -29,6 +29,9 @@ def render(
 ) -> UInt8[np.ndarray, "height width 3"]:
     """Render a diffuse mesh, with highlights if asked for, as an sRGB picture.
 
+    It needs no extra renderer and draws a face in a fraction of a second. Its light is linear sRGB;
+    for light of a given spectrum see `skinnet.material.MitsubaCapture`.
+
     Args:
         mesh: A mesh, or a `Scene` of it to share between several pictures.
         albedo: Linear sRGB, a texture for the mesh's texture coordinates or one colour.
