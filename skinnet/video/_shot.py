@@ -10,7 +10,7 @@ from skinnet.images.faces._face_place import place_face, to_box
 from skinnet.images.faces.face import Face
 from skinnet.inference._uncertainty import PIGMENTS
 from skinnet.inference.decomposer import Decomposer
-from skinnet.inference.full_resolution._colour_table import tabulate_colours
+from skinnet.inference.full_resolution._colour_table import ColourTable, tabulate_colours
 from skinnet.video._blood_response import BloodResponse
 from skinnet.video._face_follower import Followed
 from skinnet.video._frame_colours import BRIGHTEST, DARKEST, FrameColours
@@ -34,8 +34,13 @@ and by how much it grows with the bend of the mesh."""
 _CHROMA_BY_BEND = 0.05
 """Standard deviation of log colour for each unit of bend, by which the mesh slides on the skin."""
 
-_SCALE_SD = 0.15
-"""Relative standard deviation of a change: tone curve, camera and resting maps scale it."""
+_SCALE_SD = 0.22
+"""Relative standard deviation of a change: skins differ in what else they are made of, by .2 (see
+`_blood_response._ANSWER`), and tone curves scale colours, by .1. What the uncertainty of the
+resting maps adds is computed."""
+
+_MOST_FACTOR = 25.0
+"""Largest factor on the noise by the spread of the baseline; more is a movement."""
 
 _BLUR = 2.5
 """Standard deviation, in texels, over which the map of changes is smoothed."""
@@ -156,12 +161,32 @@ class Shot:
         tops = tuple(self._decomposer.encoder.output_info[name].range[1] for name in PIGMENTS)
         table = tabulate_colours(self._decomposer.decoder, self.rest.capture, (tops[0], tops[1]))
         self._response = BloodResponse(table, self.rest, self._regions)
+        self._scale_sd = self._find_scale_sd(table)
         self._direction = self._response.differentiate()[0]
         self._resting = self.space.fill(self.rest.hemoglobin)
         self._texel_weights = self._weigh_texels(table)
         self._noise = RunningNoise(len(NAMES))
         self._before: Array | None = None
         self._warm_up(waiting)
+
+    def _find_scale_sd(self, table: ColourTable) -> Array:
+        """Relative standard deviation of changes, [regions], by that of the resting maps.
+
+        Where more blood is read than there is, the model's colours answer more to a change of its
+        logarithm, and the change that is read is too small.
+        """
+        assert self.rest is not None
+        variance = np.full(len(NAMES), _SCALE_SD**2)
+        for pigment, (_, sds) in enumerate((self.resting_melanin(), self.resting_blood())):
+            slopes = []
+            for way in (-1, 1):
+                factors = np.ones((len(NAMES), 2), np.float32)
+                factors[:, pigment] = np.exp(way * sds)
+                slopes.append(
+                    BloodResponse(table, self.rest, self._regions, factors).measure_chroma()
+                )
+            variance += (np.log(slopes[1] / slopes[0]) / 2) ** 2
+        return np.sqrt(variance)
 
     def _set_base(self, chosen: list[NDArray[np.float32]]) -> None:
         assert self.rest is not None
@@ -177,10 +202,18 @@ class Shot:
         self._areas = self._regions.sum(1)
 
     def _warm_up(self, waiting: list[_Buffered]) -> None:
-        """Learn the noise from the baseline, before its first frame is solved."""
-        for one in waiting:
-            if one.colours is not None:
-                self._noise.add(one.time, self._compare(one.colours)[0])
+        """Learn the noise from the baseline, before its first frame is solved.
+
+        Compression holds errors over many frames, which differences do not see; the spread of the
+        baseline does.
+        """
+        rows = [(one.time, self._compare(one.colours)[0]) for one in waiting
+                if one.colours is not None]  # fmt: skip
+        for time, ratios in rows:
+            self._noise.add(time, ratios)
+        self._noise_factor = _compare_spreads(
+            np.stack([ratios for _, ratios in rows]), self._noise.covariance
+        )
 
     def _compare(self, colours: NDArray[np.float32]) -> tuple[Array, NDArray[np.bool_]]:
         """Log ratios of the regions' colours to the baseline, [regions, 3]; NaN if hidden."""
@@ -217,11 +250,13 @@ class Shot:
             return make_blank(number, time, self.number, HIDDEN, len(NAMES))
         if self._before is not None:
             self._noise.add(time, ratios)
-        noise = self._noise.covariance + (_CHROMA_BY_BEND * bend) ** 2 * np.eye(3)
+        noise = self._noise_factor * self._noise.covariance + (
+            _CHROMA_BY_BEND * bend
+        ) ** 2 * np.eye(3)
         gloss = _GLOSS_SD + _GLOSS_BY_BEND * bend**2
         found = self._response.solve(np.where(read[:, None], ratios, 0.0), noise, gloss)
         change = np.where(read, found.change, np.nan)
-        sd = np.where(read, np.hypot(found.sd, _SCALE_SD * found.change), np.nan)
+        sd = np.where(read, np.hypot(found.sd, self._scale_sd * found.change), np.nan)
         base, base_sd = self.resting_blood()
         return Reading(
             number,
@@ -260,9 +295,9 @@ class Shot:
         sds[0] = float(face)
         return np.array(means), np.array(sds)
 
-    def _weigh_texels(self, table: object) -> NDArray[np.float32]:
+    def _weigh_texels(self, table: ColourTable) -> NDArray[np.float32]:
         """Weights of log R, G, B in the change of each covered texel, [texels, 3]."""
-        assert self.rest is not None and callable(table)
+        assert self.rest is not None
         step = np.float32(0.1)
         lit = [
             np.log(
@@ -297,3 +332,19 @@ class Shot:
         texture[hidden] = np.nan
         assert texture.shape == (SIZE, SIZE)
         return np.asarray(texture, np.float32)
+
+
+def _compare_spreads(ratios: Array, noise: Array) -> Array:
+    """Variance of chroma in a baseline over that of its noise, at least 1, [regions, 1, 1]."""
+    seen = np.isfinite(ratios).all(2)
+    factors = np.ones((ratios.shape[1], 1, 1))
+    for region, own in enumerate(seen.T):
+        if own.sum() > 5:
+            whole = np.cov(ratios[own, region].T)
+            factors[region] = max(1.0, _measure_chroma(whole) / _measure_chroma(noise[region]))
+    return np.minimum(factors, _MOST_FACTOR)
+
+
+def _measure_chroma(covariance: Array) -> float:
+    """Variance of what channels do not share."""
+    return float(max(np.trace(covariance) - covariance.mean() * 3, 1e-12))

@@ -90,8 +90,9 @@ class VideoFrames:
         kind, device = _name_camera(number)
         if kind not in self._av.formats_available:
             raise InputError(
-                f"Camera {number} cannot be opened: PyAV is built without {kind} here. Record a "
-                "video with another program, and give its file; or feed frames to Tracker in Python."
+                f"Camera {number} cannot be opened: PyAV is built without {kind} here. Record "
+                "a video with another program, and give its file; or feed frames to Tracker in "
+                "Python."
             )
         try:
             return self._av.open(device, format=kind)

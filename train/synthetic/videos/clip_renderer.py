@@ -58,9 +58,9 @@ class ClipSettings:
         face: Side of the face's box in sides of the frame.
     """
 
-    seconds: float = 14.0
+    seconds: float = 12.0
     rate: float = 30.0
-    size: int = 360
+    size: int = 320
     noise: float = 0.006
     face: float = 0.45
 

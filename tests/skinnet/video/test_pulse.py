@@ -1,0 +1,58 @@
+"""The pulse of signals whose rate is known."""
+
+import numpy as np
+import pytest
+
+from skinnet.video._pulse import PulseEstimate, PulseMeter, PulseSummary
+
+BLOOD = np.array([-0.06, -0.2, -0.18])
+
+
+def make_signal(rate: float, seconds: float = 14.0) -> tuple[np.ndarray, np.ndarray]:
+    """Uneven times, and log colours with a pulse, a strong common movement and some noise."""
+    rng = np.random.default_rng(0)
+    times = np.cumsum(rng.uniform(0.02, 0.05, int(seconds / 0.035)))
+    beat = np.sin(2 * np.pi * rate / 60 * times) + 0.3 * np.sin(4 * np.pi * rate / 60 * times)
+    move = 0.05 * np.sin(2 * np.pi * 1.3 * times)
+    return times, 0.02 * beat[:, None] * BLOOD + move[:, None] + rng.normal(
+        0, 3e-4, (len(times), 3)
+    )
+
+
+@pytest.mark.parametrize("rate", [52.0, 95.0, 140.0])
+def test_the_rate_is_found_under_movement(rate: float) -> None:
+    meter, summary = PulseMeter(), PulseSummary()
+    for time, ratios in zip(*make_signal(rate), strict=True):
+        found = meter.add(float(time), ratios[None], BLOOD[None])
+        if found is not None:
+            summary.add(found)
+    described = summary.describe()
+    assert described["is_readable"] and abs(described["rate_bpm"] - rate) < 2
+
+
+def test_noise_has_no_readable_pulse() -> None:
+    meter, summary = PulseMeter(), PulseSummary()
+    rng = np.random.default_rng(1)
+    for number in range(400):
+        found = meter.add(number / 30, rng.normal(0, 1e-3, (1, 3)), BLOOD[None])
+        if found is not None:
+            summary.add(found)
+    assert not summary.describe()["is_readable"]
+
+
+def test_a_summary_without_estimates_says_so() -> None:
+    assert PulseSummary().describe()["rate_bpm"] is None
+
+
+def test_a_gap_begins_anew() -> None:
+    meter = PulseMeter()
+    for number in range(300):
+        meter.add(number / 30, np.sin(number / 5) * BLOOD[None], BLOOD[None])
+    assert meter.add(20.0, BLOOD[None], BLOOD[None]) is None
+
+
+def test_the_median_is_weighed_by_quality() -> None:
+    summary = PulseSummary()
+    for rate, quality in ((60.0, 0.9), (61.0, 0.9), (150.0, 0.1)):
+        summary.add(PulseEstimate(0.0, rate, quality))
+    assert 60 <= summary.describe()["rate_bpm"] <= 61.5

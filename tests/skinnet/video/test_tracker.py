@@ -1,0 +1,69 @@
+"""The tracker, fed with frames."""
+
+import numpy as np
+import pytest
+from skimage.data import astronaut
+
+from skinnet.errors import InputError
+from skinnet.inference import Decomposer
+from skinnet.video import Tracker
+from skinnet.video._regions import FACE, NAMES
+from tests.small_videos import RATE, make_frames
+
+
+@pytest.fixture(scope="module")
+def decomposer() -> Decomposer:
+    return Decomposer(threads=1)
+
+
+def follow(tracker: Tracker, frames: list[np.ndarray], start: float = 0.0) -> list:
+    return [
+        reading
+        for number, frame in enumerate(frames)
+        for reading in tracker.add(frame, start + number / RATE)
+    ]
+
+
+def test_exposure_cancels_and_blood_does_not(decomposer: Decomposer) -> None:
+    dark = [(0.8 * each).astype(np.uint8) for each in make_frames(4, 0)]
+    tracker = Tracker(decomposer, baseline=(0, 0.3), looks=2, maps=False)
+    readings = follow(tracker, make_frames(10, 0) + dark + make_frames(8)[-1:])
+    change = np.array([each.change[NAMES.index(FACE)] for each in readings])
+    assert np.abs(change[10:14]).max() < 0.06 < change[-1]
+    assert readings[11].gain[0] < 0.8
+
+
+def test_melanin_is_one_number(decomposer: Decomposer) -> None:
+    tracker = Tracker(decomposer, baseline=(0, 0.2), looks=2, maps=False)
+    follow(tracker, make_frames(8))
+    track = tracker.finish()
+    assert track.frames == {"read": 8, "lost": 0, "hidden": 0}
+    assert track.melanin[FACE]["mean"] > 0 and "melanin" not in repr(tracker.waiting)
+
+
+def test_a_cut_begins_a_shot_and_a_lost_face_is_said(decomposer: Decomposer) -> None:
+    photo = astronaut()
+    wall = np.random.default_rng(0).integers(90, 110, (256, 256, 3)).astype(np.uint8)
+    other = photo[:256, 100:356][:, ::-1].copy()
+    tracker = Tracker(decomposer, baseline=(0, 0.2), looks=2, maps=False)
+    readings = follow(tracker, [*make_frames(6, 0), wall, wall, *[other] * 6])
+    track = tracker.finish()
+    assert track.frames["lost"] == 2 and any("cut" in each for each in track.notes)
+    assert [each["number"] for each in track.shots] == [1, 2]
+    assert {each.state for each in readings} == {"read", "lost"}
+
+
+def test_times_must_increase(decomposer: Decomposer) -> None:
+    tracker = Tracker(decomposer)
+    tracker.add(astronaut(), 1.0)
+    with pytest.raises(InputError, match="increase"):
+        tracker.add(astronaut(), 1.0)
+
+
+@pytest.mark.parametrize(
+    ("arguments", "sentence"),
+    [({"baseline": (3, 1)}, "baseline"), ({"looks": 0}, "looks"), ({"face": 0}, "face is")],
+)
+def test_arguments_are_checked(decomposer: Decomposer, arguments: dict, sentence: str) -> None:
+    with pytest.raises(InputError, match=sentence):
+        Tracker(decomposer, **arguments)
