@@ -77,7 +77,16 @@ class BloodResponse:
         melanin = np.array([_average_melanin(rest, mask) for mask in regions])
         answer = (_ANSWER[0] + _ANSWER[1] * np.log(melanin))[:, None, None]
         self.curves: Array = answer * (np.log(curves) - np.log(middle))
+        self._extend(colours, rest, regions)
         self.white: Array = middle[:, 0, 1:2] / middle[:, 0]
+
+    def _extend(self, colours: ColourTable, rest: RestingMaps, regions: NDArray[np.bool_]) -> None:
+        """Go on in a straight line beyond the most blood that the table has."""
+        for curve, mask in zip(self.curves, regions, strict=True):
+            most = np.log(colours.top[1] / float(rest.hemoglobin[_choose(rest, mask)].max()))
+            last = int(np.clip(np.searchsorted(self.nodes, most) - 1, _NODES // 2 + 2, _NODES - 1))
+            slope = curve[last] - curve[last - 1]
+            curve[last:] = curve[last] + slope * np.arange(_NODES - last)[:, None]
 
     def solve(self, ratios: Array, noise: Array, gloss_sd: float | Array) -> Solution:
         """Solve for the change of each region.

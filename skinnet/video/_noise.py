@@ -20,13 +20,16 @@ class RunningNoise:
 
     Half of the mean square of differences between neighbours in time is the variance of the noise,
     whatever changes slowly (von Neumann 1941).
+
+    Attributes:
+        time: Time of the last frame.
     """
 
     def __init__(self, regions: int) -> None:
         self._sum = np.zeros((regions, 3, 3))
         self._weight = np.zeros(regions)
         self._before = np.full((regions, 3), np.nan)
-        self._time = -np.inf
+        self.time = -np.inf
 
     @property
     def covariance(self) -> Array:
@@ -38,13 +41,13 @@ class RunningNoise:
         """Add the log ratios [regions, 3] of a frame; NaN for what is not seen."""
         difference = (ratios - self._before) / np.sqrt(2)
         seen = np.isfinite(difference).all(1)
-        fade = np.exp(-max(time - self._time, 0.0) / _SECONDS) if np.isfinite(self._time) else 0.0
+        fade = np.exp(-max(time - self.time, 0.0) / _SECONDS) if np.isfinite(self.time) else 0.0
         cut = self._limit(np.where(seen[:, None], difference, 0.0))
         self._sum = np.where(
             seen[:, None, None], fade * self._sum + cut[:, :, None] * cut[:, None, :], self._sum
         )
         self._weight = np.where(seen, fade * self._weight + 1, self._weight)
-        self._before, self._time = ratios, time
+        self._before, self.time = ratios, time
 
     def _limit(self, difference: Array) -> Array:
         solved = np.linalg.solve(self.covariance, difference[..., None])[..., 0]

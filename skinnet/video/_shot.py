@@ -166,7 +166,6 @@ class Shot:
         self._resting = self.space.fill(self.rest.hemoglobin)
         self._texel_weights = self._weigh_texels(table)
         self._noise = RunningNoise(len(NAMES))
-        self._before: Array | None = None
         self._warm_up(waiting)
 
     def _find_scale_sd(self, table: ColourTable) -> Array:

@@ -22,7 +22,7 @@ def test_all_files_are_written(tracked: Tracked) -> None:
 
 
 def test_the_table_has_a_row_for_each_frame(tracked: Tracked) -> None:
-    with open(tracked.folder / "clip_track.csv", newline="") as file:
+    with open(tracked.folder / "clip_track.csv", newline="", encoding="utf-8") as file:
         rows = list(csv.DictReader(file))
     assert list(rows[0]) == list(COLUMNS) and len(rows) == COUNT
     times = np.array([float(row["time"]) for row in rows])

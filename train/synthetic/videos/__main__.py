@@ -1,4 +1,4 @@
-"""Writes synthetic clips with their truth: `python -m train.synthetic.videos -o clips --clips 6`."""
+"""Writes clips with their truth: `python -m train.synthetic.videos -o clips --clips 6`."""
 
 import argparse
 import sys
