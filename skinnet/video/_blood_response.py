@@ -110,7 +110,7 @@ class BloodResponse:
         """How much the regions' chroma answers to log hemoglobin at rest, [regions], above 0."""
         slope = self.differentiate()
         chroma = slope[:, ::2] - slope[:, 1:2]
-        return np.maximum(np.sqrt((chroma**2).sum(1)), 1e-4)
+        return np.asarray(np.maximum(np.sqrt((chroma**2).sum(1)), 1e-4))
 
     def differentiate(self, change: Array | float = 0.0) -> Array:
         """Derivatives of log RGB by log hemoglobin at log changes [regions], [regions, 3]."""

@@ -31,7 +31,9 @@ class FolderFrames:
     def __init__(self, folder: Path, name: str, rate: float | None = None) -> None:
         self.notes: list[str] = []
         self._frames = self._list(folder, name, rate)
-        self.duration = self._frames[-1][0] - self._frames[0][0] if self._frames else 0.0
+        self.duration: float | None = (
+            self._frames[-1][0] - self._frames[0][0] if self._frames else 0.0
+        )
 
     def __iter__(self) -> Iterator[Frame]:
         for time, path in self._frames:

@@ -44,7 +44,7 @@ class FrameColours:
         if right - left < 2 * step or bottom - top < 2 * step:
             return np.full((len(points), 3), np.nan, np.float32)
         small = self._shrink(frame[top:bottom, left:right], step)
-        sampled = sample(small, (points - np.float32([left, top])) / np.float32(step))
+        sampled = sample(small, (points - np.array([left, top], np.float32)) / np.float32(step))
         outside = (points < 0).any(1) | (points > (frame.shape[1], frame.shape[0])).any(1)
         sampled[outside] = np.nan
         if self._tone is not None:

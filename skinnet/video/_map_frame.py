@@ -26,7 +26,7 @@ def colour_change(change: NDArray[np.floating]) -> NDArray[np.uint8]:
     places = np.clip(np.nan_to_num(change) / (2 * LARGEST_CHANGE) + 0.5, 0, 1)
     stops = np.linspace(0, 1, len(_CHANGE))
     channels = [np.interp(places, stops, one) for one in zip(*_CHANGE, strict=True)]
-    colours = np.rint(np.stack(channels, -1)).astype(np.uint8)
+    colours: NDArray[np.uint8] = np.rint(np.stack(channels, -1)).astype(np.uint8)
     colours[~np.isfinite(change)] = BLANK
     return colours
 

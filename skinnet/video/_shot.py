@@ -185,7 +185,7 @@ class Shot:
                     BloodResponse(table, self.rest, self._regions, factors).measure_chroma()
                 )
             variance += (np.log(slopes[1] / slopes[0]) / 2) ** 2
-        return np.sqrt(variance)
+        return np.asarray(np.sqrt(variance))
 
     def _set_base(self, chosen: list[NDArray[np.float32]]) -> None:
         assert self.rest is not None
@@ -244,7 +244,7 @@ class Shot:
         if colours is None:
             return make_blank(number, time, self.number, LOST, len(NAMES))
         ratios, seen = self._compare(colours)
-        read = np.isfinite(ratios).all(1)
+        read = np.asarray(np.isfinite(ratios).all(1))
         if not read[NAMES.index(FACE)]:
             return make_blank(number, time, self.number, HIDDEN, len(NAMES))
         if self._before is not None:
@@ -313,7 +313,7 @@ class Shot:
         total = noise + white[:, :, None] * white[:, None, :]
         weights = np.linalg.solve(total, slope[..., None])[..., 0]
         information = np.maximum((weights * slope).sum(1), 1e-9)
-        return (weights / information[:, None]).astype(np.float32)
+        return np.asarray(weights / information[:, None], np.float32)
 
     def _map(
         self, colours: NDArray[np.float32], seen: NDArray[np.bool_], gain: float
@@ -335,13 +335,13 @@ class Shot:
 
 def _compare_spreads(ratios: Array, noise: Array) -> Array:
     """Variance of chroma in a baseline over that of its noise, at least 1, [regions, 1, 1]."""
-    seen = np.isfinite(ratios).all(2)
+    seen = np.asarray(np.isfinite(ratios).all(2))
     factors = np.ones((ratios.shape[1], 1, 1))
     for region, own in enumerate(seen.T):
         if own.sum() > 5:
             whole = np.cov(ratios[own, region].T)
             factors[region] = max(1.0, _measure_chroma(whole) / _measure_chroma(noise[region]))
-    return np.minimum(factors, _MOST_FACTOR)
+    return np.asarray(np.minimum(factors, _MOST_FACTOR))
 
 
 def _measure_chroma(covariance: Array) -> float:

@@ -121,7 +121,7 @@ def _describe_event(event: Event) -> dict[str, Any]:
         "interval": [float(np.exp(event.log_ratio + way * 1.645 * event.sd)) for way in (-1, 1)],
     }
     what = {"kind": event.kind, "region": event.region, "shot": event.shot}
-    return what | round_all(numbers)
+    return {**what, **round_all(numbers)}
 
 
 def _summarise_regions(means: Array, log_sds: Array, top: float) -> dict[str, dict[str, Any]]:

@@ -3,6 +3,7 @@
 import csv
 from fractions import Fraction
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 from jaxtyping import UInt8
@@ -27,7 +28,8 @@ class ClipWriter:
 
         self._av, self._rate = av, rate
         self._container = av.open(str(path), "w")
-        self._quality, self._stream = quality, None
+        self._quality = quality
+        self._stream: Any = None
 
     def add(self, pixels: Pixels, time: float) -> None:
         """Add a frame at a time in seconds."""

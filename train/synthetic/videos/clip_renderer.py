@@ -29,7 +29,7 @@ from train.synthetic.photography.renderer import (
 )
 from train.synthetic.photography.shading import Shading, shade
 from train.synthetic.photography.simulated_camera import simulate_sensor, take_photograph
-from train.synthetic.scene import SceneParameters
+from train.synthetic.scene import CameraParameters, SceneParameters
 from train.synthetic.tensors import expand_colour, normalise
 from train.synthetic.videos.blood_course import BloodCourse, find_spread
 from train.synthetic.videos.head_motion import HeadMotion, displace
@@ -241,11 +241,8 @@ class ClipRenderer:
         assert len(self.regions) == len(NAMES)
 
 
-def _calm(camera: object, noise: float) -> object:
+def _calm(camera: CameraParameters, noise: float) -> CameraParameters:
     """A camera without compression of its own, mirror or blur of movement, and with some noise."""
-    from train.synthetic.scene import CameraParameters
-
-    assert isinstance(camera, CameraParameters)
     spread = torch.full_like(camera.noise, noise) * torch.tensor([1.0, 0.5])
     return camera._replace(
         quality=torch.zeros_like(camera.quality),

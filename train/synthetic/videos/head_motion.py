@@ -39,7 +39,7 @@ class HeadMotion:
         """Shift right and down, log scale, and roll, yaw and pitch in radians."""
         shift, scale, degrees = _SIZES[self.kind]
         sizes = np.array([shift, shift, scale, *[np.radians(degrees)] * 3])
-        return sizes * (_evaluate(self.waves, time) - _evaluate(self.waves, 0.0))
+        return np.asarray(sizes * (_evaluate(self.waves, time) - _evaluate(self.waves, 0.0)))
 
     def gain(self, time: float) -> float:
         """Log exposure relative to the first frame."""
@@ -50,7 +50,7 @@ class HeadMotion:
         if self.kind != "talking":
             return np.zeros(3)
         rise = np.clip(time / 1.0, 0, 1)
-        return rise * np.abs(_evaluate(self.speech, time)).clip(0, 1)
+        return np.asarray(rise * np.abs(_evaluate(self.speech, time)).clip(0, 1))
 
 
 def sample_motion(rng: np.random.Generator, kind: MotionKind) -> HeadMotion:
@@ -84,7 +84,7 @@ def displace(
     jaw = below * _bump(points, mouth[2] + (0, 0.12 * face), 0.3 * face)
     moved[..., 1] += 0.07 * opening * face * jaw
     moved[..., 1] -= 0.04 * lift * face * _bump(points, mouth[3], 0.25 * face)
-    return points - moved
+    return np.asarray(points - moved)
 
 
 def _bump(
@@ -97,7 +97,8 @@ def _sample_waves(
     rng: np.random.Generator, count: int, band: tuple[float, float]
 ) -> Float[np.ndarray, "count 3 3"]:
     amplitude = rng.dirichlet(np.ones(3), count)
-    frequency = np.exp(rng.uniform(*np.log(band), (count, 3)))
+    low, high = np.log(band).tolist()
+    frequency = np.exp(rng.uniform(low, high, (count, 3)))
     return np.stack([amplitude, frequency, rng.uniform(0, 2 * np.pi, (count, 3))], -1)
 
 

@@ -1,0 +1,78 @@
+"""Scores of clips whose reading is made up."""
+
+import numpy as np
+import pytest
+
+from benchmarks.pulse_baselines import METHODS, estimate_pulse
+from benchmarks.video import (
+    measure,
+    measure_change,
+    measure_coverage,
+    measure_melanin,
+    measure_onset,
+    measure_pulse,
+)
+from benchmarks.video_clips import ClipScore, find_tone
+from skinnet.errors import InputError
+from skinnet.video._regions import NAMES
+from train.synthetic.videos.blood_course import sample_course
+from train.synthetic.videos.clips import ClipPlan
+from train.synthetic.videos.head_motion import sample_motion
+
+
+def make_score(error: float = 0.0, sd: float = 0.05, rate_error: float = 1.0) -> ClipScore:
+    rng = np.random.default_rng(0)
+    course = sample_course(rng, 0, 12.0)
+    plan = ClipPlan(0, 0.05, course, sample_motion(rng, "still"), 12)
+    truth = np.linspace(0, 0.5, 40)[:, None] * np.ones(len(NAMES))
+    pulse = dict.fromkeys(METHODS, course.rate + 3) | {"skinnet": course.rate - rate_error}
+    onset = course.onset + 0.2
+    change = truth + error
+    return ClipScore(
+        plan,
+        "light",
+        truth,
+        change,
+        np.full_like(truth, sd),
+        pulse,
+        True,
+        onset,
+        0,
+        (0.05, 0.051),
+        0.3,
+    )
+
+
+def test_a_perfect_reading_is_perfect() -> None:
+    found = measure_change([make_score()])
+    assert found["face"]["r"] == pytest.approx(1) and found["face"]["rmse"] == 0
+    assert measure_coverage([make_score(0.05), make_score(0.2)])["all"] == 0.5
+
+
+def test_errors_are_those_that_were_made() -> None:
+    scores = [make_score(rate_error=1.0), make_score(rate_error=-2.0)]
+    assert measure_pulse(scores)["skinnet"] == pytest.approx(1.5)
+    assert measure_pulse(scores)["pos"] == pytest.approx(3)
+    assert measure_onset(scores)["mean_absolute_s"] == pytest.approx(0.2)
+    assert measure_melanin(scores)["read_again_median"] == pytest.approx(0.02)
+
+
+@pytest.mark.parametrize("name", METHODS)
+def test_baselines_find_the_rate_of_clean_skin(name: str) -> None:
+    times = np.arange(0, 14, 1 / 30)
+    beat = np.sin(2 * np.pi * 1.25 * times)
+    ratios = 0.01 * beat[:, None] * np.array([-0.3, -1.0, -0.7])
+    assert estimate_pulse(times, ratios, METHODS[name]) == pytest.approx(75, abs=1.5)
+
+
+def test_tones_are_those_of_the_typology() -> None:
+    assert [find_tone(melanin, 0.04) for melanin in (0.02, 0.1, 0.25)] == [
+        "light",
+        "medium",
+        "dark",
+    ]
+
+
+def test_bad_numbers_are_a_sentence() -> None:
+    with pytest.raises(InputError, match="clips is 1"):
+        measure(clips=0)
