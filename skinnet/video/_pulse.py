@@ -13,9 +13,12 @@ WINDOW, _EVERY, _LEAST = 12.0, 1.0, 6.0
 """Seconds that one estimate looks back, between two estimates, and before the first one."""
 
 _RATE, _ZEROS = 30.0, 4096
-_LOADING = 0.02
-"""Share of the mean variance that is added to each channel's: without it, an error of the
+_LOADING = 0.05
+"""Share of the mean variance that is added to each signal's: without it, an error of the
 direction would cancel the pulse itself."""
+
+_LEAST_SEEN = 0.9
+"""Share of the window in which a region is seen for it to count."""
 
 _HALF_WIDTH = 0.1
 """Half of the width, in Hz, of the peak and of its first harmonic, which count as pulse."""
@@ -41,7 +44,7 @@ class PulseEstimate(NamedTuple):
 
 
 class PulseMeter:
-    """Estimates the pulse once a second from the colours of the last seconds."""
+    """Estimates the pulse once a second from the colours of all regions in the last seconds."""
 
     def __init__(self) -> None:
         self._times: deque[float] = deque()
@@ -54,12 +57,12 @@ class PulseMeter:
         self._ratios.clear()
 
     def add(self, time: float, ratios: Array, direction: Array) -> PulseEstimate | None:
-        """Add log ratios [3] of a frame.
+        """Add log ratios of a frame.
 
         Args:
             time: Time stamp in seconds.
-            ratios: Log ratio of linear RGB to the baseline, [3].
-            direction: Derivative of log RGB by log hemoglobin, [3].
+            ratios: Log ratio of linear RGB to the baseline, [regions, 3]; NaN where not seen.
+            direction: Derivative of log RGB by log hemoglobin, [regions, 3].
 
         Returns:
             An estimate, once a second.
@@ -74,17 +77,25 @@ class PulseMeter:
         if time < self._next or time - self._times[0] < _LEAST:
             return None
         self._next = time + _EVERY
-        signals = resample(np.array(self._times), np.stack(self._ratios))
+        stacked = np.stack(self._ratios)
+        seen = np.isfinite(stacked).all(2).mean(0) >= _LEAST_SEEN
+        if not seen.any():
+            return None
+        count = len(stacked)
+        signals = resample(np.array(self._times), stacked[:, seen].reshape(count, -1))
         if len(signals) < 4 * _RATE or not signals.any():
             return None
-        return PulseEstimate(time, *find_peak(project(signals, direction)))
+        return PulseEstimate(time, *find_peak(project(signals, direction[seen].ravel())))
 
 
 def resample(times: Array, values: Array) -> Array:
-    """Resample values [N, channels] evenly, and keep the pulse's band alone."""
+    """Resample values [N, channels] evenly over gaps (NaN), and keep the pulse's band alone."""
     count = int((times[-1] - times[0]) * _RATE) + 1
     even = times[0] + np.arange(count) / _RATE
-    signals = np.stack([np.interp(even, times, one) for one in values.T], -1)
+    finite = [np.isfinite(one) for one in values.T]
+    signals = np.stack(
+        [np.interp(even, times[on], one[on]) for on, one in zip(finite, values.T, strict=True)], -1
+    )
     return filter_band(signals)
 
 
@@ -107,15 +118,17 @@ def project(signals: Array, direction: Array) -> Array:
     movement and light, whatever their colour.
 
     Args:
-        signals: Log RGB in the pulse's band, [N, 3].
-        direction: What blood does, [3].
+        signals: Log RGB of all regions in the pulse's band, [N, channels].
+        direction: What blood does to them, [channels].
 
     Source:
         J. Capon, High-resolution frequency-wavenumber spectrum analysis, Proceedings of the IEEE
         57, 1969, with the direction of the skin model instead of a steering vector.
     """
     covariance = signals.T @ signals / len(signals)
-    loaded = covariance + _LOADING * np.trace(covariance) / 3 * np.eye(3)
+    loaded = covariance + _LOADING * np.trace(covariance) / len(covariance) * np.eye(
+        len(covariance)
+    )
     weights = np.linalg.solve(loaded, direction)
     return np.asarray(signals @ (weights / max(float(weights @ direction), 1e-12)))
 

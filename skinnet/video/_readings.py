@@ -26,7 +26,7 @@ class Reading(NamedTuple):
         gain: Exposure and shading relative to the baseline, [regions].
         ratios: Log ratio of linear RGB to the baseline, [regions, 3].
         texture: Log change over the face's texture, float32 [size, size]; None if not asked for.
-        direction: Derivative of the face's log RGB by log hemoglobin at rest, [3].
+        direction: Derivative of log RGB by log hemoglobin at rest, [regions, 3].
         resting: Hemoglobin over the texture at rest, float32 [size, size]; None without `texture`.
     """
 

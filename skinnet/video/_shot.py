@@ -145,7 +145,7 @@ class Shot:
         if self.portrait is None:
             points = self.space.place(followed.landmarks)
             picked = sample(frame.astype(np.float32), points)
-            self.portrait = np.rint(self.space.fill(picked, 232)).astype(np.uint8)
+            self.portrait = np.rint(self.space.fill(picked, 232.0)).astype(np.uint8)
 
     def _begin(self, waiting: list[_Buffered]) -> None:
         """Set the baseline, and the answer of the regions to blood."""
@@ -162,7 +162,7 @@ class Shot:
         table = tabulate_colours(self._decomposer.decoder, self.rest.capture, (tops[0], tops[1]))
         self._response = BloodResponse(table, self.rest, self._regions)
         self._scale_sd = self._find_scale_sd(table)
-        self._direction = self._response.differentiate()[0]
+        self._direction = self._response.differentiate()
         self._resting = self.space.fill(self.rest.hemoglobin)
         self._texel_weights = self._weigh_texels(table)
         self._noise = RunningNoise(len(NAMES))
@@ -327,7 +327,9 @@ class Shot:
         smooth = ndimage.gaussian_filter(layers, (_BLUR, _BLUR, 0))
         with np.errstate(divide="ignore", invalid="ignore"):
             texture = smooth[..., 0] / smooth[..., 1]
-        hidden = ~self.space.fill(self._usable, 0).astype(bool) | (smooth[..., 1] < 0.2)
+        hidden = ~self.space.fill(self._usable.astype(np.float32), 0.0).astype(bool) | (
+            smooth[..., 1] < 0.2
+        )
         texture[hidden] = np.nan
         assert texture.shape == (SIZE, SIZE)
         return np.asarray(texture, np.float32)

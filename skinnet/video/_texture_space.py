@@ -78,14 +78,15 @@ def sample(image: NDArray[np.float32], points: NDArray[np.float32]) -> NDArray[n
     x = np.clip(points[:, 0] - 0.5, 0, width - 1.001)
     y = np.clip(points[:, 1] - 0.5, 0, height - 1.001)
     column, row = x.astype(np.int32), y.astype(np.int32)
-    right, down = (x - column)[:, None], (y - row)[:, None]
+    right, down = (
+        (place - whole).astype(np.float32)[:, None] for place, whole in ((x, column), (y, row))
+    )
     flat, first = image.reshape(height * width, -1), row * width + column
     below = np.minimum(first + width, height * width - 1)
     after = np.minimum(below + 1, height * width - 1)
     top = flat[first] * (1 - right) + flat[np.minimum(first + 1, height * width - 1)] * right
     bottom = flat[below] * (1 - right) + flat[after] * right
-    sampled: NDArray[np.float32] = top * (1 - down) + bottom * down
-    return sampled
+    return np.asarray(top * (1 - down) + bottom * down, np.float32)
 
 
 def _to_texels(square: TurnedSquare, points: Points) -> Points:

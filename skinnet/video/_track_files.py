@@ -82,6 +82,15 @@ class TrackFiles:
                     container.mux(packet)
                 container.close()
 
+    def discard(self) -> None:
+        """Close what is open, whatever has happened."""
+        file, self._file = self._file, None
+        container, self._container = self._container, None
+        for each in (file, container):
+            if each is not None:
+                with suppress(OSError, ValueError):
+                    each.close()
+
     def rescue(self) -> None:
         """Give up the video of the map, so that there is space for the table, and close it."""
         container, self._container = self._container, None

@@ -7,7 +7,7 @@ from collections.abc import Iterator
 from contextlib import ExitStack
 from dataclasses import replace
 from pathlib import Path
-from typing import Any, Protocol
+from typing import Any, Protocol, runtime_checkable
 
 from skinnet.errors import InputError
 from skinnet.files import write_together
@@ -43,6 +43,7 @@ _CAMERA = "camera"
 _STILL = (".jpg", ".jpeg", ".png", ".tif", ".tiff", ".heic", ".webp", ".bmp", ".avif", ".jp2")
 
 
+@runtime_checkable
 class _Frames(Protocol):
     """What frames are read from."""
 
@@ -137,6 +138,7 @@ class _Run:
                 maps = _name_beside(end, "part") if self.options.map else None
                 files = TrackFiles(table, maps)
                 stack.callback(_remove, maps)
+                stack.callback(files.discard)
                 found = self._follow(frames, files)
                 self._close(files, folder)
                 notes = tuple(dict.fromkeys((*found.notes, *frames.notes, *self.notes)))

@@ -1,5 +1,6 @@
 """A face in a video, followed frame by frame."""
 
+from collections.abc import Sequence
 from typing import Any
 
 import numpy as np
@@ -68,7 +69,7 @@ class Tracker:
         decomposer: Decomposer | None = None,
         *,
         face: FaceChoice = None,
-        baseline: tuple[float, float] = _BASELINE,
+        baseline: Sequence[int | float] = _BASELINE,
         looks: int = _LOOKS,
         capture: Any = None,
         maps: bool = True,
@@ -216,9 +217,9 @@ class Tracker:
             self._meter.clear()
         self._seen = reading.time
         self._take_events(reading)
-        face = NAMES.index(FACE)
         if reading.direction is not None:
-            found = self._meter.add(reading.time, reading.ratios[face], reading.direction)
+            parts = [index for index, name in enumerate(NAMES) if name != FACE]
+            found = self._meter.add(reading.time, reading.ratios[parts], reading.direction[parts])
             if found is not None:
                 self.pulse = found
                 self._summary.add(found)
@@ -282,7 +283,7 @@ def _make_lost(number: int, time: float, shot: int) -> Reading:
     return make_blank(number, time, shot, LOST, len(NAMES))
 
 
-def _check_baseline(baseline: tuple[float, float]) -> tuple[float, float]:
+def _check_baseline(baseline: Sequence[int | float]) -> tuple[float, float]:
     begin, end = (float(each) for each in baseline)
     if not 0 <= begin < end < np.inf:
         raise InputError(

@@ -9,11 +9,11 @@ BLOOD = np.array([-0.06, -0.2, -0.18])
 
 
 def make_signal(rate: float, seconds: float = 14.0) -> tuple[np.ndarray, np.ndarray]:
-    """Uneven times, and log colours with a pulse, a strong common movement and some noise."""
+    """Uneven times, and log colours with a pulse, a larger common movement and some noise."""
     rng = np.random.default_rng(0)
     times = np.cumsum(rng.uniform(0.02, 0.05, int(seconds / 0.035)))
     beat = np.sin(2 * np.pi * rate / 60 * times) + 0.3 * np.sin(4 * np.pi * rate / 60 * times)
-    move = 0.05 * np.sin(2 * np.pi * 1.3 * times)
+    move = 0.008 * np.sin(2 * np.pi * 1.3 * times)
     return times, 0.02 * beat[:, None] * BLOOD + move[:, None] + rng.normal(
         0, 3e-4, (len(times), 3)
     )
