@@ -247,11 +247,10 @@ class Shot:
         read = np.asarray(np.isfinite(ratios).all(1))
         if not read[NAMES.index(FACE)]:
             return make_blank(number, time, self.number, HIDDEN, len(NAMES))
-        if self._before is not None:
+        if time > self._noise.time:  # else it is of the baseline, which is learnt from already
             self._noise.add(time, ratios)
-        noise = self._noise_factor * self._noise.covariance + (
-            _CHROMA_BY_BEND * bend
-        ) ** 2 * np.eye(3)
+        noise = self._noise_factor * self._noise.covariance
+        noise = noise + (_CHROMA_BY_BEND * bend) ** 2 * np.eye(3)
         gloss = _GLOSS_SD + _GLOSS_BY_BEND * bend**2
         found = self._response.solve(np.where(read[:, None], ratios, 0.0), noise, gloss)
         change = np.where(read, found.change, np.nan)
