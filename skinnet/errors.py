@@ -51,6 +51,7 @@ _EXTRAS = {
     "chart": frozenset({"colour", "colour_checker_detection", "cv2"}),
     "heif": frozenset({"pillow_heif"}),
     "raw": frozenset({"rawpy"}),
+    "textures": _TORCH | {"OpenImageIO", "scipy"},
     "torch": _TORCH,
     "scans": _SCANS,
     "train": _SCANS | {"lightning", "rich", "tensorboard", "torchmetrics"},

@@ -1,1 +1,4 @@
-__all__: list[str] = []
+from .albedo import AlbedoColour as AlbedoColour
+from .albedo import AlbedoMaps as AlbedoMaps
+
+__all__ = ["AlbedoColour", "AlbedoMaps"]
