@@ -3,7 +3,7 @@ PYTHON ?= $(or $(shell command -v python3.11),python3)
 BIN := .venv/bin
 READY := .venv/.ready
 
-.PHONY: demo test coverage test-fast test-lowest lint format bench docs runtime wheel clean
+.PHONY: demo test blender coverage test-fast test-lowest lint format bench docs runtime wheel clean
 
 demo: $(READY)
 	$(BIN)/python -m train fit --config configs/quick.yaml
@@ -55,6 +55,7 @@ bench: $(READY)
 	$(BIN)/python -m benchmarks.identifiability
 	$(BIN)/python -m benchmarks.charts
 	$(BIN)/python -m benchmarks.indices
+	$(BIN)/python -m benchmarks.shaders
 
 # The guide, as pages that open without a server: build/site/index.html.
 docs: $(READY)
@@ -64,11 +65,19 @@ docs: $(READY)
 runtime: $(READY)
 	@$(BIN)/python -m tools.web_runtime || true
 
+# Blender as a Python module, for tests of the shader alone; 374 MB from the package index.
+blender: .venv-blender/.ready
+
+.venv-blender/.ready: constraints.txt
+	$(PYTHON) -m venv .venv-blender
+	.venv-blender/bin/python -m pip install --quiet -c constraints.txt bpy
+	touch .venv-blender/.ready
+
 wheel: $(READY) runtime
 	$(BIN)/python -m build --wheel
 
 clean:
-	rm -rf .venv .venv-lowest build dist
+	rm -rf .venv .venv-lowest .venv-blender build dist
 
 # The constraints hold the tested versions; without them a package that needs torch may bring CUDA.
 $(READY): pyproject.toml constraints.txt
