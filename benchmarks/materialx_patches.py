@@ -13,7 +13,9 @@ _ROLES = {"table": "table", "melanin_map": "melanin", "hemoglobin_map": "hemoglo
 def load(path: Path) -> Any:
     """Load a document with MaterialX's libraries, and validate it."""
     library = MaterialX.createDocument()
-    MaterialX.loadLibraries(MaterialX.getDefaultDataLibraryFolders(), MaterialX.getDefaultDataSearchPath(), library)
+    MaterialX.loadLibraries(
+        MaterialX.getDefaultDataLibraryFolders(), MaterialX.getDefaultDataSearchPath(), library
+    )
     document = MaterialX.createDocument()
     MaterialX.readFromXmlFile(document, str(path))
     document.setDataLibrary(library)

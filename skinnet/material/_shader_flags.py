@@ -18,8 +18,8 @@ def add_shader(verb: argparse.ArgumentParser) -> None:
         "maps",
         nargs="*",
         type=Path,
-        help="maps of melanin, hemoglobin and the offset that the material reads, as skinnet invert "
-        "and skinnet maps write them; without maps it has sliders alone",
+        help="maps of melanin, hemoglobin and the offset that the material reads, as skinnet "
+        "invert and skinnet maps write them; without maps it has sliders alone",
     )
     verb.add_argument(
         "--target",

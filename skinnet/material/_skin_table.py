@@ -4,7 +4,7 @@ from typing import NamedTuple
 
 import numpy as np
 import torch
-from jaxtyping import Float32
+from jaxtyping import Float32, Float64
 
 from skinnet.errors import InputError
 from skinnet.physics import SkinLookup, SkinReflectance, load_spectrum_to_srgb
@@ -66,3 +66,7 @@ def tabulate_skin(
     with torch.no_grad():
         colours = skin(f_mel[None, :], f_blood[:, None]) @ matrix
     return SkinTable(colours.numpy().astype(np.float32), *axes)
+
+
+def _list_nodes(axis: PigmentAxis) -> Float64[torch.Tensor, "nodes"]:
+    return torch.from_numpy(axis.fractions(np.arange(axis.nodes, dtype=np.float64)))
