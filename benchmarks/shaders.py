@@ -19,7 +19,7 @@ from numpy.typing import NDArray
 from benchmarks.webgl_patches import VERTEX, draw, find_chromium, open_webgl
 from skinnet.cli import main as run_skinnet
 from skinnet.images._png_file import write_png
-from skinnet.physics import SkinReflectance, SpectralCamera
+from skinnet.physics import SkinReflectance, SpectralCamera, load_camera
 
 BLENDER = Path(__file__).parents[1] / ".venv-blender" / "bin" / "python"
 """Python of the environment that `make blender` makes."""
@@ -93,7 +93,8 @@ class ShaderPatches:
         blood = 1 + edit["Flush"] * edit["Flush Mask"] + edit["Pulse"] * wave
         f_mel = self.fractions["melanin"] * edit["Melanin Factor"] + edit["Melanin Add"]
         f_blood = self.fractions["hemoglobin"] * edit["Hemoglobin Factor"] + edit["Hemoglobin Add"]
-        skin, camera = (each(dtype=torch.float64) for each in (SkinReflectance, SpectralCamera))
+        skin = SkinReflectance(dtype=torch.float64)
+        camera = SpectralCamera(mean=load_camera("observer"), dtype=torch.float64)
         given = (torch.from_numpy(each.clip(0, 1)) for each in (f_mel, f_blood * blood))
         colours: NDArray[np.float64] = camera(skin(*given)).detach().numpy()
         return colours

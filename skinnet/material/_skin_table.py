@@ -29,7 +29,7 @@ class SkinTable(NamedTuple):
 
 
 def tabulate_skin(
-    light: str = "D65", camera: str = "mean", size: tuple[int, int] = (256, 128)
+    light: str = "D65", camera: str = "observer", size: tuple[int, int] = (256, 128)
 ) -> SkinTable:
     """Compute the colours of skin under a light and a camera.
 

@@ -12,7 +12,7 @@ from PIL import Image
 from benchmarks.shaders import BLENDER, read_table
 from skinnet.cli import main
 from skinnet.images._png_file import write_png
-from skinnet.physics import SkinReflectance, SpectralCamera
+from skinnet.physics import SkinReflectance, SpectralCamera, load_camera
 
 
 def write_map(path: Path, name: str, scale: str = "1e-6") -> Path:
@@ -44,7 +44,8 @@ def test_the_table_holds_the_colours_of_the_layer_at_its_documented_axes(folder:
     formulas = (axis.partition("f = ")[2].replace("^", "**") for axis in axes)
     f_mel, f_blood = (eval(formula, {"i": i, "j": j}) for formula in formulas)
     assert 0 < f_mel < 1 and 0 < f_blood < 1
-    expected = SpectralCamera()(SkinReflectance()(torch.tensor(f_mel), f_blood))
+    camera = SpectralCamera(mean=load_camera("observer"))
+    expected = camera(SkinReflectance()(torch.tensor(f_mel), f_blood))
     np.testing.assert_allclose(colours[j, i], expected, atol=2e-5)
 
 

@@ -1,6 +1,7 @@
 """Maps of a texture as a shader reads them: which file is which map, and what its numbers mean."""
 
 import math
+import re
 import struct
 from collections.abc import Iterable, Sequence
 from pathlib import Path
@@ -17,6 +18,9 @@ _INPUTS = {
     "offset": "Offset",
 }
 """Inputs of the shader by the names of maps."""
+
+_WHITE = re.compile(r"(\w+): volume fraction, ([0-9.e-]+) at white")
+"""How skinnet invert describes a map."""
 
 _EXR = b"v/1\x01"
 _AHEAD = 1 << 20
@@ -79,6 +83,10 @@ def _describe_png(path: Path, head: bytes) -> ShaderMap:
     chunks = list(list_chunks(head, ahead=True))
     header = dict(chunks).get(b"IHDR", b"").ljust(13, b"\0")
     texts = dict(_read_texts(body for name, body in chunks if name == b"tEXt"))
+    if described := _WHITE.match(texts.get("Description", texts.get("ImageDescription", ""))):
+        name, white = described.groups()
+        if name in _INPUTS:
+            return ShaderMap(_INPUTS[name], path, float(white))
     name = texts.get("map", "")
     if name not in _INPUTS:
         held = f"the map {name!r}" if name else "no map with a scale"
