@@ -25,7 +25,7 @@ _TONES = {"light": (0.03, 0.05), "medium": (0.085, 0.05), "dark": (0.26, 0.05)}
 """Volume fractions of melanin and of blood."""
 
 _SIDE, _LEVELS = 1024, 65535
-_CHEEKS = ((0.33, 0.42), (0.67, 0.42))
+_CHEEKS = ((0.36, 0.41), (0.64, 0.41))
 
 
 def main(folder: Path) -> int:
