@@ -6,7 +6,7 @@ READY := .venv/.ready
 # Compiled modules are kept: tests start many processes, and each would compile the package again.
 unexport PYTHONDONTWRITEBYTECODE
 
-.PHONY: demo test coverage fuzz test-fast test-lowest lint format bench docs runtime wheel audit clean
+.PHONY: demo test blender coverage fuzz test-fast test-lowest lint format bench docs runtime wheel audit clean
 
 demo: $(READY)
 	$(BIN)/python -m train fit --config configs/quick.yaml
@@ -65,6 +65,7 @@ bench: $(READY)
 	$(BIN)/python -m benchmarks.identifiability
 	$(BIN)/python -m benchmarks.charts
 	$(BIN)/python -m benchmarks.indices
+	$(BIN)/python -m benchmarks.shaders
 
 # The guide, as pages that open without a server: build/site/index.html.
 docs: $(READY)
@@ -73,6 +74,14 @@ docs: $(READY)
 # What the web page needs from npm; without npm a sentence says so, and the page is left out.
 runtime: $(READY)
 	@$(BIN)/python -m tools.web_runtime || true
+
+# Blender as a Python module, for tests of the shader alone; 374 MB from the package index.
+blender: .venv-blender/.ready
+
+.venv-blender/.ready:
+	$(PYTHON) -m venv .venv-blender
+	.venv-blender/bin/python -m pip install --quiet bpy==5.0.1
+	touch .venv-blender/.ready
 
 # The bill of materials lies beside the wheel, and in its folder .dist-info/sboms.
 wheel: $(READY) runtime
@@ -86,7 +95,7 @@ audit: $(READY)
 	$(BIN)/python -m tools.audit
 
 clean:
-	rm -rf .venv .venv-lowest build dist
+	rm -rf .venv .venv-lowest .venv-blender build dist
 
 # The constraints hold the tested versions; without them a package that needs torch may bring CUDA.
 $(READY): pyproject.toml constraints.txt

@@ -64,6 +64,7 @@ _EXTRAS = {
     "heif": frozenset({"pillow_heif"}),
     "mitsuba": _TORCH | {"mitsuba"},
     "raw": frozenset({"rawpy"}),
+    "textures": _TORCH | {"OpenImageIO", "scipy"},
     "video": frozenset({"av"}),
     "torch": _TORCH,
     "scans": _SCANS,

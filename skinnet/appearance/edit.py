@@ -5,14 +5,12 @@ from dataclasses import dataclass, replace
 import numpy as np
 from jaxtyping import Float, Float32
 
+from skinnet.appearance._offset_factor import compute_offset_factor
 from skinnet.appearance.colour import SkinColour
 from skinnet.appearance.skin_texture import SkinTexture
 from skinnet.errors import InputError
 
 _LARGEST_SCALE = 10.0
-
-_DARKEST = 1e-6
-"""Linear R, G or B below which a channel is as good as black."""
 
 
 @dataclass(frozen=True)
@@ -120,8 +118,7 @@ def edit_texture(
         f_blood=texture.f_blood + weight * (hemoglobin(texture.f_blood) - texture.f_blood),
     )
     before, after = (_decode_bare(one, colour) for one in (texture, edited))
-    ratio = (np.maximum(after, _DARKEST) / np.maximum(before, _DARKEST)).clip(0, 1)
-    return replace(edited, offset=texture.offset * ratio.astype(np.float32))
+    return replace(edited, offset=texture.offset * compute_offset_factor(before, after))
 
 
 def _decode_bare(texture: SkinTexture, colour: SkinColour) -> Float32[np.ndarray, "size size 3"]:

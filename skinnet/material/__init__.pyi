@@ -1,3 +1,5 @@
+from .albedo import AlbedoColour as AlbedoColour
+from .albedo import AlbedoMaps as AlbedoMaps
 from .mitsuba import MitsubaCapture as MitsubaCapture
 
-__all__ = ["MitsubaCapture"]
+__all__ = ["AlbedoColour", "AlbedoMaps", "MitsubaCapture"]

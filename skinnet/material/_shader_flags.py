@@ -18,8 +18,8 @@ def add_shader(verb: argparse.ArgumentParser) -> None:
         "maps",
         nargs="*",
         type=Path,
-        help="maps of melanin, hemoglobin and the offset that the material reads, as skinnet invert "
-        "and skinnet maps write them; without maps it has sliders alone",
+        help="maps of melanin, hemoglobin and the offset that the material reads, as skinnet "
+        "invert and skinnet maps write them; without maps it has sliders alone",
     )
     verb.add_argument(
         "--target",
@@ -46,10 +46,10 @@ def add_shader(verb: argparse.ArgumentParser) -> None:
     )
     verb.add_argument(
         "--camera",
-        default="mean",
+        default="observer",
         metavar="NAME",
-        help="camera of the colours: the mean of 52 cameras (the default), one of them, or a .csv "
-        "file of sensitivities",
+        help="what sees the colours: observer (CIE 1931, the default, as of skinnet invert), a "
+        "camera, mean for the mean of 52 cameras, or a .csv file of sensitivities",
     )
     verb.add_argument(
         "--size",

@@ -8,7 +8,7 @@ from string import Template
 from typing import Any, NamedTuple
 
 from skinnet._version import __version__
-from skinnet.material._map_files import ShaderMap
+from skinnet.material._shader_maps import ShaderMap
 from skinnet.material._skin_table import SkinTable
 
 NAME = "skin"

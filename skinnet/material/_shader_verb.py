@@ -11,8 +11,8 @@ from skinnet.errors import InputError
 from skinnet.files import make_folder, write_atomically, write_together
 from skinnet.inference._messages import note, print_line
 from skinnet.material._blend_file import find_blender, write_blend
-from skinnet.material._map_files import describe_maps
 from skinnet.material._shader_flags import TARGETS
+from skinnet.material._shader_maps import describe_maps
 from skinnet.material._shader_sources import NAME, TABLE, WRITERS, ShaderSource
 from skinnet.material._skin_table import tabulate_skin
 from skinnet.material._table_files import write_table_exr, write_table_png

@@ -4,7 +4,7 @@ from typing import NamedTuple
 
 import numpy as np
 import torch
-from jaxtyping import Float32
+from jaxtyping import Float32, Float64
 
 from skinnet.errors import InputError
 from skinnet.physics import SkinLookup, SkinReflectance, load_spectrum_to_srgb
@@ -29,7 +29,7 @@ class SkinTable(NamedTuple):
 
 
 def tabulate_skin(
-    light: str = "D65", camera: str = "mean", size: tuple[int, int] = (256, 128)
+    light: str = "D65", camera: str = "observer", size: tuple[int, int] = (256, 128)
 ) -> SkinTable:
     """Compute the colours of skin under a light and a camera.
 
@@ -66,3 +66,7 @@ def tabulate_skin(
     with torch.no_grad():
         colours = skin(f_mel[None, :], f_blood[:, None]) @ matrix
     return SkinTable(colours.numpy().astype(np.float32), *axes)
+
+
+def _list_nodes(axis: PigmentAxis) -> Float64[torch.Tensor, "nodes"]:
+    return torch.from_numpy(axis.fractions(np.arange(axis.nodes, dtype=np.float64)))

@@ -1,14 +1,13 @@
 """The table of colours as EXR and as 16-bit PNG, with its axes in the files' texts."""
 
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 
-from skinnet.errors import InputError
 from skinnet.images._chunks import insert_chunks, make_text
 from skinnet.images._mark import Mark
 from skinnet.material._skin_table import SkinTable
+from skinnet.material._texture_file import import_openimageio
 from skinnet.physics._pigment_axis import PigmentAxis
 
 _LEVELS = 65535
@@ -24,7 +23,7 @@ def write_table_exr(path: Path, table: SkinTable) -> None:
     Raises:
         InputError: OpenImageIO is not installed.
     """
-    oiio = _import_openimageio()
+    oiio = import_openimageio()
     rows, columns = table.colours.shape[:2]
     spec = oiio.ImageSpec(columns, rows, 3, oiio.FLOAT)
     texts = describe_axes(table) | {"compression": "zip", "oiio:ColorSpace": "lin_rec709_scene"}
@@ -67,13 +66,3 @@ def describe_axes(table: SkinTable) -> dict[str, str]:
 def _describe_axis(axis: PigmentAxis, index: str) -> str:
     spacing, last = repr(axis.spacing), axis.nodes - 1
     return f"f = {spacing} * ((1 + 1 / {spacing}) ^ ({index} / {last}) - 1)"
-
-
-def _import_openimageio() -> Any:
-    try:
-        import OpenImageIO
-    except ModuleNotFoundError as error:
-        raise InputError(
-            'skinnet shader writes EXR by OpenImageIO: pip install "skinnet[material]"'
-        ) from error
-    return OpenImageIO

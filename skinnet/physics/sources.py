@@ -19,6 +19,9 @@ from skinnet.physics.spectra import load_cameras, load_observer
 _MEAN = "mean"
 """Name of the mean of the measured cameras."""
 
+_OBSERVER = "observer"
+"""Name of the CIE 1931 standard observer in place of a camera."""
+
 _DAYLIGHT = re.compile(r"[dD](\d{2}|\d{4,5}\s*[kK]?)$")
 _TEMPERATURES = (4000.0, 25000.0)
 _FILE = re.compile(r"[/\\]|\.[A-Za-z]\w*$")
@@ -64,7 +67,8 @@ def load_camera(name: str | Path) -> Float[Tensor, "wavelength 3"]:
     """Load the sensitivities of a camera at the 33 bands.
 
     Args:
-        name: One of the 52 measured cameras in any case, `mean`, or the path of a text file of
+        name: One of the 52 measured cameras in any case, `mean`, `observer` for the CIE 1931
+            standard observer, whose colours are exactly those of sRGB, or the path of a text file of
             wavelength in nm and the sensitivities to power of R, G and B, which are averaged as
             `load_light` describes. Columns that the file names are taken by their names. The
             measured cameras are samples every 10 nm; colours from their tables of 5 nm differ by
@@ -92,7 +96,10 @@ def load_camera(name: str | Path) -> Float[Tensor, "wavelength 3"]:
     measured = load_cameras()
     if name.lower() == _MEAN:
         return torch.stack(list(measured.values())).mean(0)
-    return _find(name, measured, "camera", f"{_MEAN}, or ")
+    if name.lower() == _OBSERVER:
+        curves = load_observer()
+        return curves / curves.sum(0)
+    return _find(name, measured, "camera", f"{_MEAN}, {_OBSERVER}, or ")
 
 
 def load_spectrum_to_srgb(light: str | Path, camera: str | Path) -> Float[Tensor, "wavelength 3"]:
