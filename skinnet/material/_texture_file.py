@@ -145,7 +145,7 @@ def _check_form(source: Any, spec: Any, path: Path) -> None:
             f"{path} has values of the type {spec.format}; save it with 8 or 16 bits, or as half "
             "or float."
         )
-    if spec.depth > 1 or source.seek_subimage(1, 0) and spec.format in ("half", "float"):
+    if spec.depth > 1 or (source.seek_subimage(1, 0) and spec.format in ("half", "float")):
         raise InputError(f"{path} has several parts; save the albedo alone.")
     source.seek_subimage(0, 0)
     if max(spec.width, spec.height) > _MAX_SIDE:
@@ -213,9 +213,7 @@ def describe_copy(texture: TextureFile, software: str) -> Any:
 
 def describe_map(texture: TextureFile, channels: int, type_: str, texts: dict[str, str]) -> Any:
     """Describe a map of the size of a texture."""
-    spec = import_openimageio().ImageSpec(
-        texture.spec.width, texture.spec.height, channels, type_
-    )
+    spec = import_openimageio().ImageSpec(texture.spec.width, texture.spec.height, channels, type_)
     for key, value in texts.items():
         spec.attribute(key, value)
     spec.attribute("oiio:ColorSpace", "lin_rec709_scene" if type_ == "float" else "data")
