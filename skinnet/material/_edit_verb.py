@@ -247,22 +247,22 @@ def _write_tile(
     paints = {name: _read_paint(path, name, tile) for name, path in wanted.paints.items()}
     spec = describe_copy(texture, str(Mark("edit-albedo", "edited", digest)))
     spec.set_format(tile.encoding.type)
-    writer, top = TextureWriter(part, spec), 0
-    for stored, maps in tile.strips(colour):
-        rows = slice(top, top + len(stored))
-        top += len(stored)
-        weight = maps.skin if mask is None else maps.skin * to_share(mask[rows])
-        here = {name: plane[rows] for name, plane in paints.items()}
-        fractions = _edit_fractions(maps, weight, here, wanted, _place(tile, rows))
-        rgb = list(texture.rgb)
-        counts.add(
-            tile.encoding.normalise(stored[..., rgb]).reshape(-1, 3),
-            AlbedoMaps(*(one.ravel() for one in maps[:5]), maps.offset.reshape(-1, 3)),
-            get_opaque(stored, texture).ravel(),
-        )
-        writer.write(_recolour(stored, maps, fractions, colour, tile))
-        advance(maps.f_mel.size)
-    writer.close()
+    with TextureWriter(part, spec) as writer:
+        top = 0
+        for stored, maps in tile.strips(colour):
+            rows = slice(top, top + len(stored))
+            top += len(stored)
+            weight = maps.skin if mask is None else maps.skin * to_share(mask[rows])
+            here = {name: plane[rows] for name, plane in paints.items()}
+            fractions = _edit_fractions(maps, weight, here, wanted, _place(tile, rows))
+            rgb = list(texture.rgb)
+            counts.add(
+                tile.encoding.normalise(stored[..., rgb]).reshape(-1, 3),
+                AlbedoMaps(*(one.ravel() for one in maps[:5]), maps.offset.reshape(-1, 3)),
+                get_opaque(stored, texture).ravel(),
+            )
+            writer.write(_recolour(stored, maps, fractions, colour, tile))
+            advance(maps.f_mel.size)
     return counts.check(tile.name)
 
 

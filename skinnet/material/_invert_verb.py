@@ -173,11 +173,12 @@ def _write_tile(
 ) -> TextureCounts:
     """Write the maps of one file; files are written while the next rows are inverted."""
     encoding, counts = Encoding(texture.type, texture.linear), TextureCounts()
-    writers = {
-        name: TextureWriter(part, _describe_file(texture, name, digest))
-        for name, part in parts.items()
-    }
-    with ThreadPoolExecutor(2) as pool:
+    with ExitStack() as stack:
+        writers = {
+            name: stack.enter_context(TextureWriter(part, _describe_file(texture, name, digest)))
+            for name, part in parts.items()
+        }
+        pool = stack.enter_context(ThreadPoolExecutor(2))  # it ends before the files are closed
         waiting: list[Future[None]] = []
         for stored in texture.read_strips():
             strip = invert_strip(stored, texture, encoding, colour)
@@ -192,8 +193,6 @@ def _write_tile(
             advance(strip.maps.f_mel.size)
         for one in waiting:
             one.result()
-    for writer in writers.values():
-        writer.close()
     return counts
 
 

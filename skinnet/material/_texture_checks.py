@@ -1,7 +1,7 @@
 """What a texture shows beside an albedo: normals, data, baked highlights, no skin."""
 
 import numpy as np
-from jaxtyping import Float32
+from jaxtyping import Float32, Shaped
 
 from skinnet.errors import InputError
 from skinnet.material.albedo import AlbedoMaps
@@ -26,7 +26,7 @@ class TextureCounts:
         self,
         encoded: Float32[np.ndarray, "texels 3"],
         maps: AlbedoMaps,
-        opaque: Float32[np.ndarray, "texels"],
+        opaque: Shaped[np.ndarray, "texels"],
     ) -> None:
         """Count the texels of a strip, whose stored values are `encoded`, white being 1."""
         colours, place = encoded[::_STEP], opaque[::_STEP] > 0
