@@ -77,8 +77,6 @@ class _Edit(NamedTuple):
 def edit(options: argparse.Namespace) -> None:
     """Write NAME_edited beside a texture, of its own type, bits and profile."""
     wanted = _read_edit(options)
-    if wanted.changes_nothing:
-        note("Nothing is edited, so the copy has the colours of the texture itself.")
     with ExitStack() as stack:
         if options.texture.suffix.lower() == ".json":
             tiles, colour, digest, stem, folder = _open_maps(options, stack)
@@ -90,6 +88,8 @@ def edit(options: argparse.Namespace) -> None:
         stem = choose_stem(folder, f"{stem}_edited", ends, lambda file: owns(file, digest))
         files = [folder / (stem + end) for end in ends]
         _write(tiles, files, colour, wanted, digest)
+    if wanted.changes_nothing:
+        note("Nothing is edited, so the copy has the colours of the texture itself.")
     _print(options, wanted, files)
 
 

@@ -69,9 +69,9 @@ class TextureFile:
         for top in range(spec.y, end, rows):
             strip = self._read(top, min(top + rows, end))
             if strip is None:
+                said = " ".join(self.input.geterror().split())
                 raise InputError(
-                    f"{self.path} is damaged or cut short ({self.input.geterror()}); copy or "
-                    "download it again."
+                    f"{self.path} is damaged or cut short ({said}); copy or download it again."
                 )
             yield np.asarray(strip)
 

@@ -63,7 +63,7 @@ def test_tiles_of_a_set_and_tiled_files(tmp_path: Path) -> None:
 
 
 def test_other_peoples_files_are_not_replaced(tmp_path: Path) -> None:
-    write_texture(tmp_path / "a.png", paint_skin(16), "uint8")
+    write_texture(tmp_path / "a.png", paint_skin(32), "uint8")
     folder = tmp_path / "skinmaps"
     folder.mkdir()
     (folder / "a_skin.png").write_bytes(b"mine")
