@@ -189,7 +189,7 @@ def _run_photo_verb(verb: str, options: Any) -> int:
     except ModuleNotFoundError as error:
         if verb not in MATERIAL_VERBS:
             raise
-        raise _explain_missing(error, "torch", f"skinnet {verb}") from error
+        raise _explain_missing(error, "textures", f"skinnet {verb}") from error
 
 
 def _wants_help(arguments: list[str]) -> bool:

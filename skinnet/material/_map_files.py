@@ -1,123 +1,107 @@
-"""Maps of a texture as a shader reads them: which file is which map, and what its numbers mean."""
+"""The maps of an albedo as files: their names, scales and record."""
 
-import math
-import struct
-from collections.abc import Iterable, Sequence
+import hashlib
+import json
+from collections.abc import Iterable
 from pathlib import Path
-from typing import NamedTuple
+from typing import Any
 
-from skinnet.errors import InputError, _explain_fault
-from skinnet.images._chunks import SIGNATURE, list_chunks
+import numpy as np
+from jaxtyping import Float32, UInt16
 
-_INPUTS = {
-    "melanin": "Melanin",
-    "f_mel": "Melanin",
-    "hemoglobin": "Hemoglobin",
-    "f_blood": "Hemoglobin",
-    "offset": "Offset",
-}
-"""Inputs of the shader by the names of maps."""
+from skinnet.errors import InputError
+from skinnet.files import READ_ERRORS
+from skinnet.files._reading import MOST_TEXT, read_file
+from skinnet.images._mark import Mark, parse_mark, read_mark
+from skinnet.images._result_names import compute_digest
+from skinnet.material._texture_file import import_openimageio
 
-_EXR = b"v/1\x01"
-_AHEAD = 1 << 20
-"""Bytes in which the texts of a map of skinnet lie, which come before its pixels."""
+WHITES = {"melanin": 0.5, "hemoglobin": 0.25, "melanin_sd": 0.125, "hemoglobin_sd": 0.125}
+"""Volume fractions of white in maps of 16 bits."""
 
+MAPS = (*WHITES, "skin", "offset")
+"""All maps; a file each."""
 
-class ShaderMap(NamedTuple):
-    """A map that feeds an input of the shader: value = scale * what the texture gives + offset.
-
-    Args:
-        input: Melanin, Hemoglobin or Offset.
-        path: Its file.
-        scale: Value of the file's largest number, less `offset`; 1 for files of floats.
-        offset: Value of the number 0.
-    """
-
-    input: str
-    path: Path
-    scale: float = 1.0
-    offset: float = 0.0
+RECORD_END = "_maps.json"
+_TOP = 65535
 
 
-def describe_maps(paths: Iterable[Path]) -> list[ShaderMap]:
-    """Find which input each map feeds, and how its numbers are read.
+def to_pixels(fraction: Float32[np.ndarray, "*texels"], name: str) -> UInt16[np.ndarray, "*texels"]:
+    """Convert fractions to the pixels of a map."""
+    scaled = (fraction * np.float32(_TOP / WHITES[name])).clip(0, _TOP)
+    return np.asarray(np.rint(scaled), np.uint16)
 
-    Args:
-        paths: PNG files that say which map they hold, with their scale and offset, as skinnet
-            writes them; or EXR files of floats, whose names end in the name of the map.
 
-    Returns:
-        The maps.
+def to_fractions(
+    pixels: UInt16[np.ndarray, "*texels"], name: str
+) -> Float32[np.ndarray, "*texels"]:
+    """Convert the pixels of a map to fractions."""
+    return np.asarray(pixels * np.float32(WHITES[name] / _TOP), np.float32)
+
+
+def name_map(stem: str, name: str, tile: int | None, texture: Path, is_float: bool) -> str:
+    """Name the file of a map; the offset has a format that holds the texture's values."""
+    suffix = choose_suffix(texture, is_float) if name == "offset" else ".png"
+    return f"{stem}_{name}{'' if tile is None else f'.{tile}'}{suffix}"
+
+
+def choose_suffix(texture: Path, is_float: bool) -> str:
+    """Choose the ending of a file that loses nothing of a texture's values."""
+    suffix = texture.suffix.lower()
+    if suffix in (".tif", ".tiff"):
+        return suffix
+    return ".exr" if is_float else ".png"
+
+
+def compute_set_digest(paths: Iterable[Path]) -> str:
+    """Compute one digest of the files of a texture."""
+    digests = [compute_digest(path) for path in paths]
+    if len(digests) == 1:
+        return digests[0]
+    return hashlib.sha256("".join(digests).encode()).hexdigest()
+
+
+def owns(file: Path, digest: str) -> bool:
+    """Whether a file is a result of the texture of a digest, so that it may be replaced."""
+    mark = _read_own_mark(file)
+    return mark is not None and mark.digest == digest
+
+
+def _read_own_mark(file: Path) -> Mark | None:
+    if file.suffix == ".json":
+        try:
+            return parse_mark(json.loads(read_file(file, MOST_TEXT)).get("mark"))
+        except (*READ_ERRORS, AttributeError):
+            return None
+    if file.suffix != ".exr":
+        return read_mark(file)
+    oiio = import_openimageio()
+    source = oiio.ImageInput.open(str(file))
+    if source is None:
+        oiio.geterror()
+        return None
+    software = source.spec().getattribute("Software")
+    source.close()
+    return parse_mark(software)
+
+
+def read_record(path: Path) -> dict[str, Any]:
+    """Read the record that invert wrote, and check that all its maps are there.
 
     Raises:
-        InputError: A file cannot be read, is not a map of melanin, hemoglobin or the offset, or is
-            one of two of a kind; or one pigment alone is given.
+        InputError: It is another file, or a map is missing.
     """
-    maps = [_describe(path) for path in paths]
-    _check_set(maps)
-    return maps
-
-
-def _describe(path: Path) -> ShaderMap:
     try:
-        with path.open("rb") as file:
-            head = file.read(_AHEAD)
-    except OSError as error:
-        raise InputError(f"{path} cannot be read {_explain_fault(error)}.") from error
-    if head.startswith(SIGNATURE):
-        return _describe_png(path, head)
-    name = path.stem.rpartition("_")[2]
-    if head.startswith(_EXR) and name in _INPUTS:
-        return ShaderMap(_INPUTS[name], path)
-    raise InputError(
-        f"{path} is no map of skinnet; give the PNG files of skinnet invert or skinnet maps, or "
-        "EXR files of floats that end in _melanin.exr, _hemoglobin.exr or _offset.exr."
-    )
-
-
-def _describe_png(path: Path, head: bytes) -> ShaderMap:
-    chunks = list(list_chunks(head, ahead=True))
-    header = dict(chunks).get(b"IHDR", b"").ljust(13, b"\0")
-    texts = dict(_read_texts(body for name, body in chunks if name == b"tEXt"))
-    name = texts.get("map", "")
-    if name not in _INPUTS:
-        held = f"the map {name!r}" if name else "no map with a scale"
+        record = json.loads(read_file(path, MOST_TEXT))
+        files = [path.parent / name for tile in record["tiles"] for name in tile["files"].values()]
+        known = {"light", "camera", "transform", "type", "linear"} <= record.keys()
+    except (OSError, ValueError, KeyError, TypeError, AttributeError) as error:
         raise InputError(
-            f"{path} holds {held}; a shader takes maps of melanin, hemoglobin and the offset, as "
-            "skinnet invert and skinnet maps write them."
-        )
-    levels = (1 << struct.unpack(">IIBBBBB", header[:13])[2]) - 1
-    scale, offset = (_read_number(path, texts, key) for key in ("scale", "offset"))
-    return ShaderMap(_INPUTS[name], path, scale * levels, offset)
-
-
-def _read_texts(bodies: Iterable[bytes]) -> Iterable[tuple[str, str]]:
-    for body in bodies:
-        key, _, value = body.partition(b"\0")
-        yield key.decode("latin-1"), value.decode("latin-1")
-
-
-def _read_number(path: Path, texts: dict[str, str], key: str) -> float:
-    try:
-        value = float(texts.get(key, ""))
-    except ValueError:
-        value = math.nan
-    if not math.isfinite(value):
-        raise InputError(
-            f"The {key} of {path} is {texts.get(key)!r}, which is no number; write the map again."
-        )
-    return value
-
-
-def _check_set(maps: Sequence[ShaderMap]) -> None:
-    inputs = [each.input for each in maps]
-    for name in inputs:
-        if inputs.count(name) > 1:
-            both = " and ".join(str(each.path) for each in maps if each.input == name)
-            raise InputError(f"{both} are both maps of the {name.lower()}; give one of them.")
-    missing = {"Melanin", "Hemoglobin"} - {*inputs}
-    if maps and missing:
-        raise InputError(
-            f"There is no map of the {min(missing).lower()} among the maps; give both pigments' "
-            "maps, and the offset's if there is one."
-        )
+            f"{path} is not a NAME_maps.json of skinnet invert; give that, or the albedo."
+        ) from error
+    if not known:
+        raise InputError(f"{path} is not a NAME_maps.json of skinnet invert; give that.")
+    missing = [str(file) for file in files if not file.is_file()]
+    if missing:
+        raise InputError(f"{path} names {missing[0]}, which is missing; run skinnet invert again.")
+    return dict(record)

@@ -1,6 +1,8 @@
 """Texture files of any size, read and written by strips of rows (OpenImageIO)."""
 
+import os
 from collections.abc import Iterator
+from contextlib import contextmanager
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -67,9 +69,9 @@ class TextureFile:
         for top in range(spec.y, end, rows):
             strip = self._read(top, min(top + rows, end))
             if strip is None:
+                said = " ".join(self.input.geterror().split())
                 raise InputError(
-                    f"{self.path} is damaged or cut short ({self.input.geterror()}); copy or "
-                    "download it again."
+                    f"{self.path} is damaged or cut short ({said}); copy or download it again."
                 )
             yield np.asarray(strip)
 
@@ -197,9 +199,32 @@ class TextureWriter:
         if not self._output.close():
             self._fail()
 
+    def __enter__(self) -> "TextureWriter":
+        return self
+
+    def __exit__(self, kind: object, *_: object) -> None:
+        if kind is None:
+            self.close()
+        else:
+            with _silence():  # libpng would print that the file is not complete
+                self._output.close()
+
     def _fail(self) -> None:
         said = self._output.geterror() if self._output else "unknown ending"
         raise OSError(None, f"it cannot be written: {said}", str(self._path))
+
+
+@contextmanager
+def _silence() -> Iterator[None]:
+    """Hide what C libraries print to standard error."""
+    kept, null = os.dup(2), os.open(os.devnull, os.O_WRONLY)
+    try:
+        os.dup2(null, 2)
+        yield
+    finally:
+        os.dup2(kept, 2)
+        os.close(kept)
+        os.close(null)
 
 
 def describe_copy(texture: TextureFile, software: str) -> Any:

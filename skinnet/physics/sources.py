@@ -68,7 +68,7 @@ def load_camera(name: str | Path) -> Float[Tensor, "wavelength 3"]:
 
     Args:
         name: One of the 52 measured cameras in any case, `mean`, `observer` for the CIE 1931
-            standard observer, whose colours are exactly those of sRGB, or the path of a text file of
+            standard observer, whose colours are exactly sRGB, or the path of a text file of
             wavelength in nm and the sensitivities to power of R, G and B, which are averaged as
             `load_light` describes. Columns that the file names are taken by their names. The
             measured cameras are samples every 10 nm; colours from their tables of 5 nm differ by

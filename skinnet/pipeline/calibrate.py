@@ -14,6 +14,7 @@ from jaxtyping import Float
 
 from skinnet.appearance.colour import SkinColour
 from skinnet.calibration._exposure import fit_exposure
+from skinnet.calibration._model_colours import tabulate_model_colours
 from skinnet.calibration.colour_transform import calibrate
 from skinnet.errors import InputError, _check_count
 from skinnet.files._reading import MOST_TEXT, read_file
@@ -21,7 +22,6 @@ from skinnet.images.srgb import srgb_to_linear
 from skinnet.inference._messages import log
 from skinnet.physics.inversion import SkinInverse, _check_axis
 from skinnet.physics.optics import SkinOptics
-from skinnet.physics.reflectance import SkinReflectance
 from skinnet.physics.sources import load_spectrum_to_srgb
 
 _LIGHT_WORDS = {"daylight": "D65", "flash": "D5500K", "tungsten": "A", "incandescent": "A"}
@@ -185,15 +185,7 @@ class ColourSettings:
         return SkinColour(matrix, transform, self.optics, _NODES, self.light_name, self.camera)
 
     def _tabulate_model(self, matrix: _Matrix) -> Float[np.ndarray, "mel blood 3"]:
-        """Tabulate the colours of the model over the ranges of the fractions, a few thousand."""
-        axes = [
-            torch.linspace(low**0.5, high**0.5, 64, dtype=torch.float64) ** 2
-            for low, high in (self.f_mel, self.f_blood)
-        ]
-        f_mel, f_blood = (axis.ravel() for axis in torch.meshgrid(*axes, indexing="ij"))
-        reflectance = SkinReflectance(self.optics, dtype=torch.float64)
-        colours = reflectance(f_mel, f_blood).numpy() @ matrix
-        return np.asarray(colours.reshape(*(len(axis) for axis in axes), 3))
+        return tabulate_model_colours(matrix, self.optics, self.f_mel, self.f_blood)
 
 
 @dataclass(frozen=True)
