@@ -24,7 +24,7 @@ from skinnet.appearance import PigmentEdit, edit_texture, load_maps
 from skinnet.appearance.colour import SkinColour
 from skinnet.appearance.skin_texture import SkinTexture
 from skinnet.errors import InputError
-from skinnet.images import linear_to_srgb, to_uint8
+from skinnet.images import linear_to_srgb, resize, to_uint8
 from skinnet.inference._tiles import draw_grid, draw_picture
 from skinnet.material import MitsubaCapture
 from skinnet.mesh import Mesh, read_mesh, write_mesh
@@ -53,7 +53,9 @@ def draw(options: argparse.Namespace) -> None:
     faces = sorted((load_maps(file) for file in maps), key=lambda face: measure_melanin(face[0]))
     chosen = [faces[k] for k in np.linspace(0, len(faces) - 1, 3).astype(int)]
     tiles = [tile for texture, colour in chosen for tile in draw_row(texture, colour, options)]
-    write_picture(options.output, draw_grid(tiles, 1 + len(LIGHTS) + len(EDITS)), "relighting")
+    sheet = draw_grid(tiles, 1 + len(LIGHTS) + len(EDITS))
+    half = resize(sheet, sheet.shape[1] // 2, sheet.shape[0] // 2)
+    write_picture(options.output, half, "relighting")
 
 
 def choose_variant(name: str) -> None:

@@ -54,7 +54,7 @@ def register(variant: str) -> None:
 def _make_class() -> type:
     """Make the plug-in's class; its base is that of the variant that is set."""
 
-    class SkinTexture(mi.Texture):  # type: ignore[misc, name-defined]
+    class SkinTexture(mi.Texture):
         """Reflectance of skin; see `MitsubaCapture.skin` for its parameters."""
 
         def __init__(self, props: Any) -> None:
@@ -65,7 +65,7 @@ def _make_class() -> type:
             self.table = _make_table(self.optics)
             self.offset = props.get_unbounded_texture("offset", 0.0) if "offset" in props else None
             spectra = str(props.get("offset_spectra", ""))
-            self.spectra = None if self.offset is None else _make_spectra(spectra)
+            self.spectra: Any = None if self.offset is None else _make_spectra(spectra)
 
         def eval(self, si: Any, active: Any = True) -> Any:
             blood = _find_place(self.hemoglobin.eval_1(si, active), 1)
@@ -127,7 +127,8 @@ def _find_place(fraction: Any, axis: int) -> Any:
 
 def _make_table(optics: str) -> Any:
     """Table of reflectance over f_mel, f_blood and wavelength, read by linear interpolation."""
-    return mi.Texture3f(mi.TensorXf(_compute_table(optics)), wrap_mode=dr.WrapMode.Clamp)
+    kind: Any = mi.Texture3f
+    return kind(mi.TensorXf(_compute_table(optics)), wrap_mode=dr.WrapMode.Clamp)
 
 
 @cache
@@ -148,4 +149,5 @@ def _make_spectra(text: str) -> Any:
     else:
         spectra = compute_offset_spectra(load_spectrum_to_srgb("D65", "mean").numpy())
     rows = np.ascontiguousarray(spectra.T, np.float32)
-    return mi.Texture1f(mi.TensorXf(rows), wrap_mode=dr.WrapMode.Clamp)
+    kind: Any = mi.Texture1f
+    return kind(mi.TensorXf(rows), wrap_mode=dr.WrapMode.Clamp)
