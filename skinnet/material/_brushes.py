@@ -192,7 +192,7 @@ def _place(x: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
 def _paint_freckles(
     values: dict[str, float], u: np.ndarray, v: np.ndarray
 ) -> Float32[np.ndarray, "rows columns"]:
-    return _paint_spots(values, u, v, 0.35, 1.2) * _step(3 * _fade(values, u, v))
+    return np.asarray(_paint_spots(values, u, v, 0.35, 1.2) * _step(3 * _fade(values, u, v)))
 
 
 def _paint_moles(
@@ -205,7 +205,7 @@ def _paint_flush(
     values: dict[str, float], u: np.ndarray, v: np.ndarray
 ) -> Float32[np.ndarray, "rows columns"]:
     noise = _sample_noise(values["seed"], values["radius"] / 3, u, v)
-    return _step(1.2 * _fade(values, u, v)) * (0.85 + 0.15 * noise).clip(0.4, 1)
+    return np.asarray(_step(1.2 * _fade(values, u, v)) * (0.85 + 0.15 * noise).clip(0.4, 1))
 
 
 def _paint_tan_line(

@@ -32,9 +32,9 @@ def make_colour(options: argparse.Namespace, textures: list[TextureFile]) -> Alb
     matrix = load_spectrum_to_srgb(options.light, options.camera).numpy()
     way = options.calibration
     if way in ("exposure", "full"):
-        transform = _fit(way, matrix, np.concatenate([sample_colours(one) for one in textures]))
-    else:
-        transform = None if way == "none" else _read_transform(Path(way))
+        colours = np.concatenate([sample_colours(one) for one in textures])
+        return AlbedoColour(options.light, options.camera, _fit(way, matrix, colours))
+    transform = None if way == "none" else _read_transform(Path(way))
     return AlbedoColour(options.light, options.camera, transform)
 
 

@@ -258,7 +258,7 @@ def _write_tile(
             rgb = list(texture.rgb)
             counts.add(
                 tile.encoding.normalise(stored[..., rgb]).reshape(-1, 3),
-                AlbedoMaps(*(one.ravel() for one in maps[:5]), maps.offset.reshape(-1, 3)),
+                maps.flatten(),
                 get_opaque(stored, texture).ravel(),
             )
             writer.write(_recolour(stored, maps, fractions, colour, tile))

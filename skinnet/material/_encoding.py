@@ -26,11 +26,15 @@ class Encoding:
         """Whether stored values are floating-point numbers."""
         return self.dtype.kind == "f"
 
+    @property
+    def _top(self) -> int:
+        """The largest stored integer."""
+        return (1 << 8 * self.dtype.itemsize) - 1
+
     @cached_property
     def _table(self) -> Float32[np.ndarray, "values"]:
         """Linear values of all stored integers."""
-        top = np.iinfo(self.dtype).max
-        values = np.arange(top + 1) / top
+        values = np.arange(self._top + 1) / self._top
         return np.asarray(values if self.linear else _from_srgb(values), np.float32)
 
     def decode(self, stored: Shaped[np.ndarray, "*texels"]) -> Float32[np.ndarray, "*texels"]:
@@ -47,11 +51,11 @@ class Encoding:
             return np.asarray(values, self.dtype)
         clipped = linear.clip(0, 1)
         values = clipped if self.linear else linear_to_srgb(clipped)
-        return np.asarray(np.rint(values * np.iinfo(self.dtype).max), self.dtype)
+        return np.asarray(np.rint(values * self._top), self.dtype)
 
     def normalise(self, stored: Shaped[np.ndarray, "*texels"]) -> Float32[np.ndarray, "*texels"]:
         """Scale stored values so that white is 1."""
-        scale = 1 if self.is_float else np.iinfo(self.dtype).max
+        scale = 1 if self.is_float else self._top
         return np.asarray(stored.astype(np.float32) / np.float32(scale))
 
     def subtract(
@@ -76,10 +80,10 @@ class Encoding:
         return np.asarray(offset - self.middle + self.encode(skin), self.dtype)
 
     @property
-    def middle(self) -> np.generic:
+    def middle(self) -> Shaped[np.ndarray, ""]:
         """The stored offset of nothing, as a number of the offset's type."""
-        half = 0 if self.is_float else (np.iinfo(self.dtype).max + 1) // 2
-        return self.dtype.type(half)
+        half = 0 if self.is_float else (self._top + 1) // 2
+        return np.asarray(half, self.dtype)
 
 
 def _from_srgb(values: Shaped[np.ndarray, "*texels"]) -> Float32[np.ndarray, "*texels"]:

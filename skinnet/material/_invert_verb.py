@@ -184,7 +184,7 @@ def _write_tile(
             strip = invert_strip(stored, texture, encoding, colour)
             rgb = stored[..., list(texture.rgb)]
             opaque = get_opaque(stored, texture)
-            counts.add(encoding.normalise(rgb).reshape(-1, 3), _flatten(strip.maps), opaque.ravel())
+            counts.add(encoding.normalise(rgb).reshape(-1, 3), strip.maps.flatten(), opaque.ravel())
             planes = _to_planes(strip, texture, encoding)
             levels.add(planes, strip.maps.skin > 0)
             for one in waiting:
@@ -194,10 +194,6 @@ def _write_tile(
         for one in waiting:
             one.result()
     return counts
-
-
-def _flatten(maps: AlbedoMaps) -> AlbedoMaps:
-    return AlbedoMaps(*(one.ravel() for one in maps[:5]), maps.offset.reshape(-1, 3))
 
 
 def _describe_file(texture: TextureFile, name: str, digest: str) -> Any:

@@ -33,6 +33,11 @@ class AlbedoMaps(NamedTuple):
     skin: Float32[np.ndarray, "*texels"]
     offset: Float32[np.ndarray, "*texels 3"]
 
+    def flatten(self) -> "AlbedoMaps":
+        """The same maps with their texels in one axis."""
+        f_mel, f_blood, f_mel_sd, f_blood_sd, skin = (one.ravel() for one in self[:5])
+        return AlbedoMaps(f_mel, f_blood, f_mel_sd, f_blood_sd, skin, self.offset.reshape(-1, 3))
+
 
 class AlbedoColour:
     """The colour of skin in albedo textures under one light and camera, and its inverse.

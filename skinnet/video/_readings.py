@@ -47,12 +47,6 @@ class Reading(NamedTuple):
 
 def make_blank(number: int, time: float, shot: int, state: str, regions: int) -> Reading:
     """Make the reading of a frame of which nothing is read."""
-    nothing = np.full(regions, np.nan)
-    return Reading(
-        number,
-        time,
-        shot,
-        state,
-        *(nothing.copy() for _ in range(5)),
-        ratios=np.full((regions, 3), np.nan),
-    )
+    change, change_sd, hemoglobin, log_sd, gain = np.full((5, regions), np.nan)
+    ratios = np.full((regions, 3), np.nan)
+    return Reading(number, time, shot, state, change, change_sd, hemoglobin, log_sd, gain, ratios)
