@@ -6,7 +6,7 @@
 - `speedup_vs_kdtree`: time of scipy's cKDTree, two workers, over that of `AlbedoColour.invert`.
 - `edit_ciede2000`: median difference of edited colours from skins that were changed in the physics,
   beside a transfer of the mean colour in Lab. Skins are samples of `SkinPrior`.
-- `shader_error`, `glsl_fps`: see `benchmarks._shader_targets`; null where it is not at hand.
+- `shader_error`, `glsl_fps`: see `benchmarks.shaders`; null where their tools are not at hand.
 """
 
 import argparse
@@ -17,7 +17,6 @@ import sys
 import tempfile
 import time
 from collections.abc import Sequence
-from importlib import import_module
 from itertools import product
 from pathlib import Path
 from typing import Any
@@ -177,19 +176,16 @@ def _to_lab(linear: NDArray[Any]) -> NDArray[np.float64]:
 
 
 def measure_shaders() -> dict[str, Any]:
-    """Measure the shaders, where their module and its targets are at hand."""
+    """Measure the shaders whose tools are at hand: the largest error of all, and of each."""
     try:
-        targets: Any = import_module("benchmarks._shader_targets")
+        from benchmarks.shaders import measure_glsl_fps, measure_shader_error
     except ModuleNotFoundError as error:
         reason = f"{error.name} is not installed"
         return {"shader_error": None, "glsl_fps": None, "shader_reason": reason}
-    found: dict[str, Any] = {}
-    for key in ("shader_error", "glsl_fps"):
-        try:
-            found[key] = getattr(targets, f"measure_{key}")()
-        except (AttributeError, ImportError, OSError, RuntimeError) as error:
-            found |= {key: None, f"{key}_reason": str(error)}
-    return found
+    errors = measure_shader_error()
+    known = [error for error in errors.values() if error is not None]
+    found = {"shader_error": max(known, default=None), "shader_errors": errors}
+    return found | {"glsl_fps": measure_glsl_fps()}
 
 
 if __name__ == "__main__":

@@ -7,7 +7,9 @@ from typing import Any, NamedTuple
 import MaterialX
 from MaterialX import PyMaterialXGenGlsl, PyMaterialXGenShader
 
-_ROLES = {"table": "table", "melanin_map": "melanin", "hemoglobin_map": "hemoglobin"}
+_ROLES = {"table": "table"} | {
+    f"{name}_map": name for name in ("melanin", "hemoglobin", "skin", "original")
+}
 
 
 def load(path: Path) -> Any:
@@ -30,7 +32,7 @@ class Generated(NamedTuple):
 
     Args:
         shaders: Vertex and fragment shader.
-        textures: Names of the uniforms of the textures, by table, melanin and hemoglobin.
+        textures: Names of the uniforms of the textures, by table and names of maps.
         uniforms: The values of the other uniforms, which are numbers and vectors.
     """
 

@@ -6,7 +6,7 @@ python -m benchmarks.shaders prints both as JSON. Blender runs in the environmen
 import json
 import subprocess
 from collections.abc import Sequence
-from contextlib import redirect_stdout
+from contextlib import redirect_stderr, redirect_stdout
 from io import StringIO
 from pathlib import Path
 from tempfile import TemporaryDirectory
@@ -14,11 +14,14 @@ from typing import Any
 
 import numpy as np
 import torch
+from imagecodecs import png_encode
 from numpy.typing import NDArray
 
 from benchmarks.webgl_patches import VERTEX, draw, find_chromium, open_webgl
 from skinnet.cli import main as run_skinnet
-from skinnet.images._png_file import write_png
+from skinnet.images.srgb import linear_to_srgb, srgb_to_linear
+from skinnet.material import AlbedoColour
+from skinnet.material._map_files import WHITES
 from skinnet.physics import SkinReflectance, SpectralCamera, load_camera
 
 BLENDER = Path(__file__).parents[1] / ".venv-blender" / "bin" / "python"
@@ -27,7 +30,7 @@ BLENDER = Path(__file__).parents[1] / ".venv-blender" / "bin" / "python"
 _LEVELS, _FPS, _SIDE = 65535, 24, 32
 
 CASES: tuple[dict[str, Any], ...] = (
-    {"frame": 0, "inputs": {}},
+    {"frame": 0, "inputs": {"Keep": 0.0}},
     {
         "frame": 37,
         "inputs": {
@@ -39,21 +42,23 @@ CASES: tuple[dict[str, Any], ...] = (
             "Flush Mask": 0.5,
             "Pulse": 0.4,
             "Pulse Rate": 66.0,
+            "Keep": 0.0,
         },
     },
+    {"frame": 0, "inputs": {"Melanin Factor": 1.7, "Hemoglobin Factor": 0.5, "Keep": 1.0}},
 )
-"""Frames at 24 a second, and values of the shader's inputs."""
+"""Frames at 24 a second, and values of the shader's inputs; the last is what edit-albedo does."""
 
 _ORDER = ("Melanin Factor", "Melanin Add", "Hemoglobin Factor", "Hemoglobin Add")
-_ORDER = (*_ORDER, "Flush", "Flush Mask", "Pulse", "Pulse Rate")
-_UNCHANGED = dict(zip(_ORDER, (1.0, 0.0, 1.0, 0.0, 0.0, 1.0, 0.0, 70.0), strict=True))
+_ORDER = (*_ORDER, "Flush", "Flush Mask", "Pulse", "Pulse Rate", "Keep")
+_UNCHANGED = dict(zip(_ORDER, (1.0, 0.0, 1.0, 0.0, 0.0, 1.0, 0.0, 70.0, 1.0), strict=True))
 
 _FRAGMENT = """#version 300 es
 precision highp float;
 precision highp sampler2D;
-uniform sampler2D table, melanin, hemoglobin;
+uniform sampler2D table, melanin, hemoglobin, skin, original;
 uniform vec4 pigments, blood;
-uniform float time;
+uniform float time, keep;
 in vec2 place;
 out vec4 colour;
 {function}
@@ -61,41 +66,56 @@ void main() {{
   SkinEdit edit = SkinEdit(pigments.x, pigments.y, pigments.z, pigments.w,
                            blood.x, blood.y, blood.z, blood.w, time);
   float f_mel = texture(melanin, place).r, f_blood = texture(hemoglobin, place).r;
-  colour = vec4(skin_albedo(table, f_mel, f_blood, vec3(0.0), edit), 1.0);
+  vec3 offset = keep * skin_offset(table, f_mel, f_blood, texture(original, place).rgb);
+  float weight = texture(skin, place).r;
+  colour = vec4(skin_albedo(table, f_mel, f_blood, offset, weight, edit), 1.0);
 }}
 """
 
 
 class ShaderPatches:
-    """Maps of random pigments, the shaders that read them, and the colours that are right.
+    """A texture of random skin, lips and paint, its maps, shaders that read them, and the truth.
 
     Args:
         folder: Folder to write to.
-        fractions: f_mel and f_blood.
-        truth: Linear sRGB of each case, by the Python layer.
+        fractions: Maps: melanin and hemoglobin as volume fractions, and skin.
+        original: The texture, as stored from 0 to 1.
+        truth: Linear sRGB of each case: by the Python layer, and by `skinnet edit-albedo`.
     """
 
     def __init__(self, folder: Path) -> None:
-        """Write the maps and the shaders."""
-        rng = np.random.default_rng(0)
-        largest = {"melanin": 0.43, "hemoglobin": 0.2}
-        maps = {name: rng.random((_SIDE, _SIDE)) ** 2 * top for name, top in largest.items()}
-        self.folder = folder / "shader"
-        self.fractions = {name: _write_map(folder, name, values) for name, values in maps.items()}
-        paths = [str(folder / f"{name}.png") for name in maps]
-        with redirect_stdout(StringIO()):
-            assert run_skinnet(["shader", "-q", *paths, "-o", str(self.folder)]) == 0
-        self.truth = [self._compute(case) for case in CASES]
+        """Write the texture, its maps and the shaders."""
+        self.folder, texture = folder / "shader", folder / "albedo.png"
+        self.original = _write_texture(texture)
+        maps = str(folder / "albedo_maps.json")
+        _run("invert", "-q", str(texture), "-o", str(folder))
+        _run("shader", "-q", maps, "-o", str(self.folder))
+        whites = {"melanin": WHITES["melanin"], "hemoglobin": WHITES["hemoglobin"], "skin": 1.0}
+        self.fractions = {
+            name: _read(folder / f"albedo_{name}.png")[..., 0] * white
+            for name, white in whites.items()
+        }
+        edit = CASES[-1]["inputs"]
+        factors = [str(edit[f"{name} Factor"]) for name in ("Melanin", "Hemoglobin")]
+        flags = ("--melanin", factors[0], "--hemoglobin", factors[1], "-o", str(folder))
+        _run("edit-albedo", "-q", str(texture), *flags)
+        self.truth = [self._compute(case) for case in CASES[:-1]]
+        self.truth.append(srgb_to_linear(_read(folder / "albedo_edited.png")))
 
     def _compute(self, case: dict[str, Any]) -> NDArray[np.float64]:
+        """Compute the colours of skin without what the texture has else."""
         edit, time = _UNCHANGED | case["inputs"], case["frame"] / _FPS
         wave = 0.5 - 0.5 * np.cos(2 * np.pi * edit["Pulse Rate"] * time / 60)
         blood = 1 + edit["Flush"] * edit["Flush Mask"] + edit["Pulse"] * wave
         f_mel = self.fractions["melanin"] * edit["Melanin Factor"] + edit["Melanin Add"]
         f_blood = self.fractions["hemoglobin"] * edit["Hemoglobin Factor"] + edit["Hemoglobin Add"]
+        edited = {"melanin": f_mel.clip(0, 1), "hemoglobin": (f_blood * blood).clip(0, 1)}
         skin = SkinReflectance(dtype=torch.float64)
         camera = SpectralCamera(mean=load_camera("observer"), dtype=torch.float64)
-        given = (torch.from_numpy(each.clip(0, 1)) for each in (f_mel, f_blood * blood))
+        given = []
+        for name, after in edited.items():
+            before = self.fractions[name]
+            given.append(torch.from_numpy(before + self.fractions["skin"] * (after - before)))
         colours: NDArray[np.float64] = camera(skin(*given)).detach().numpy()
         return colours
 
@@ -108,7 +128,8 @@ class ShaderPatches:
         """Measure the errors of the node group and of the OSL shader in Cycles."""
         script, output = Path(__file__).with_name("blender_patches.py"), self.folder / "out.npz"
         cases = self.folder / "cases.json"
-        cases.write_text(json.dumps(CASES), encoding="utf-8")
+        whole = [case | {"inputs": _UNCHANGED | case["inputs"]} for case in CASES]
+        cases.write_text(json.dumps(whole), encoding="utf-8")
         words = [str(each) for each in (BLENDER, script, self.folder, cases, output)]
         done = subprocess.run(words, capture_output=True, text=True, timeout=600, check=False)
         assert done.returncode == 0, done.stderr
@@ -128,8 +149,10 @@ class ShaderPatches:
     def _make_glsl(self, case: dict[str, Any]) -> tuple[Any, ...]:
         function = (self.folder / "skin.glsl").read_text(encoding="utf-8")
         edit = list((_UNCHANGED | case["inputs"]).values())
-        uniforms = {"pigments": edit[:4], "blood": edit[4:], "time": [case["frame"] / _FPS]}
+        uniforms = {"pigments": edit[:4], "blood": edit[4:8], "keep": edit[8:]}
+        uniforms["time"] = [case["frame"] / _FPS]
         textures = {"table": (read_table(self.folder), True)}
+        textures["original"] = (srgb_to_linear(self.original), False)
         textures |= {name: (each[..., None], False) for name, each in self.fractions.items()}
         return (VERTEX, _FRAGMENT.format(function=function)), (_SIDE, _SIDE), textures, uniforms
 
@@ -138,9 +161,11 @@ class ShaderPatches:
         from benchmarks.materialx_patches import generate
 
         textures = {"table": (read_table(self.folder), True)}
+        whites = WHITES | {"skin": 1.0}
         textures |= {
-            name: (each[..., None] / each.max(), False) for name, each in self.fractions.items()
+            name: (each[..., None] / whites[name], False) for name, each in self.fractions.items()
         }
+        textures["original"] = (self.original, False)  # the shader makes it linear
         pictures = []
         for case in CASES:
             time = {"Time": case["frame"] / _FPS}
@@ -182,14 +207,32 @@ def measure_glsl_fps() -> float | None:
         return ShaderPatches(Path(folder)).measure_fps(page)
 
 
-def _write_map(folder: Path, name: str, values: NDArray[np.float64]) -> NDArray[np.float64]:
-    """Write a map of 16 bits, and return the fractions that it holds."""
-    scale = float(values.max()) / _LEVELS
-    pixels = np.rint(values / scale).astype(np.uint16)
-    key = {"melanin": "f_mel", "hemoglobin": "f_blood"}[name]
-    text = {"map": key, "scale": repr(scale), "offset": "0.0", "unit": "volume fraction"}
-    write_png(folder / f"{name}.png", pixels, text)
-    return pixels * scale
+def _run(*words: str) -> None:
+    with redirect_stdout(StringIO()), redirect_stderr(StringIO()):
+        assert run_skinnet([*words]) == 0
+
+
+def _write_texture(path: Path) -> NDArray[np.float32]:
+    """Write a texture of 16 bits: random skin, a quarter of it with lips and paint."""
+    rng = np.random.default_rng(0)
+    f_mel, f_blood = (rng.random((_SIDE, _SIDE)) ** 2 * top for top in (0.43, 0.2))
+    colour = AlbedoColour().decode(f_mel.astype(np.float32), f_blood.astype(np.float32))
+    lips, paint = slice(0, _SIDE // 8), slice(_SIDE // 8, _SIDE // 4)
+    colour[lips] *= np.array([1.0, 0.6, 0.7], np.float32)
+    colour[paint] = rng.choice(np.array([[0, 0, 0], [1, 1, 1], [0, 0.4, 0.1]]), (4, _SIDE))
+    pixels = np.rint(linear_to_srgb(colour.clip(0, 1)) * _LEVELS).astype(np.uint16)
+    path.write_bytes(png_encode(pixels))
+    return (pixels / _LEVELS).astype(np.float32)
+
+
+def _read(path: Path) -> NDArray[np.float32]:
+    """Read a file of integers as numbers from 0 to 1."""
+    import OpenImageIO
+
+    file = OpenImageIO.ImageInput.open(str(path))
+    pixels: NDArray[np.float32] = file.read_image("float")
+    file.close()
+    return pixels
 
 
 if __name__ == "__main__":

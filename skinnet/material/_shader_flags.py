@@ -18,8 +18,14 @@ def add_shader(verb: argparse.ArgumentParser) -> None:
         "maps",
         nargs="*",
         type=Path,
-        help="maps of melanin, hemoglobin and the offset that the material reads, as skinnet "
-        "invert and skinnet maps write them; without maps it has sliders alone",
+        help="NAME_maps.json of skinnet invert, or maps of melanin, hemoglobin and the offset, as "
+        "skinnet invert and skinnet maps write them; without maps the material has sliders alone",
+    )
+    verb.add_argument(
+        "--original",
+        type=Path,
+        metavar="FILE",
+        help="texture that skinnet invert read, where it is no longer in its place",
     )
     verb.add_argument(
         "--target",
@@ -39,16 +45,14 @@ def add_shader(verb: argparse.ArgumentParser) -> None:
     verb.add_argument("--overwrite", action="store_true", help="replace files that are there")
     verb.add_argument(
         "--light",
-        default="D65",
         metavar="NAME",
-        help="light of the colours: D65 (the default), another daylight, A, FL11, LED-B3 and "
-        "others, or a .csv file of wavelength and power",
+        help="light of the colours: that of the maps (the default), else D65; another daylight, A, "
+        "FL11, LED-B3 and others, or a .csv file of wavelength and power",
     )
     verb.add_argument(
         "--camera",
-        default="observer",
         metavar="NAME",
-        help="what sees the colours: observer (CIE 1931, the default, as of skinnet invert), a "
+        help="what sees the colours: that of the maps (the default), else observer (CIE 1931); a "
         "camera, mean for the mean of 52 cameras, or a .csv file of sensitivities",
     )
     verb.add_argument(

@@ -9,6 +9,8 @@ from typing import NamedTuple
 
 from skinnet.errors import InputError, _explain_fault
 from skinnet.images._chunks import SIGNATURE, list_chunks
+from skinnet.material._map_records import MapRecord, ShaderMap, find_record, open_record
+from skinnet.material._udim import TOKEN
 
 _INPUTS = {
     "melanin": "Melanin",
@@ -27,28 +29,26 @@ _AHEAD = 1 << 20
 """Bytes in which the texts of a map of skinnet lie, which come before its pixels."""
 
 
-class ShaderMap(NamedTuple):
-    """A map that feeds an input of the shader: value = scale * what the texture gives + offset.
+class ShaderMaps(NamedTuple):
+    """The maps that a shader reads.
 
     Args:
-        input: Melanin, Hemoglobin or Offset.
-        path: Its file.
-        scale: Value of the file's largest number, less `offset`; 1 for files of floats.
-        offset: Value of the number 0.
+        maps: The maps.
+        record: What skinnet invert recorded of them; None: other maps.
     """
 
-    input: str
-    path: Path
-    scale: float = 1.0
-    offset: float = 0.0
+    maps: list[ShaderMap]
+    record: MapRecord | None = None
 
 
-def describe_maps(paths: Iterable[Path]) -> list[ShaderMap]:
+def describe_maps(paths: Sequence[Path], original: Path | None = None) -> ShaderMaps:
     """Find which input each map feeds, and how its numbers are read.
 
     Args:
-        paths: PNG files that say which map they hold, with their scale and offset, as skinnet
-            writes them; or EXR files of floats, whose names end in the name of the map.
+        paths: NAME_maps.json of skinnet invert, which stands for all its maps; or PNG files that
+            say which map they hold, with their scale and offset, as skinnet writes them; or EXR
+            files of floats, whose names end in the name of the map.
+        original: The texture that skinnet invert read, where it has moved.
 
     Returns:
         The maps.
@@ -57,12 +57,44 @@ def describe_maps(paths: Iterable[Path]) -> list[ShaderMap]:
         InputError: A file cannot be read, is not a map of melanin, hemoglobin or the offset, or is
             one of two of a kind; or one pigment alone is given.
     """
-    maps = [_describe(path) for path in paths]
-    _check_set(maps)
-    return maps
+    found = _gather(paths, original)
+    _check_set(found.maps)
+    if original is not None and all(each.input != "Original" for each in found.maps):
+        raise InputError(
+            f"--original {original} needs the maps that skinnet invert made of it; give "
+            "NAME_maps.json."
+        )
+    return found
+
+
+def _gather(paths: Sequence[Path], original: Path | None) -> ShaderMaps:
+    records: dict[Path, MapRecord] = {}
+    names, maps = [], []
+    for path in paths:
+        if path.suffix.lower() == ".json":
+            record, given = open_record(path), ["melanin", "hemoglobin", "offset"]
+        elif (found := find_record(path)) is not None:
+            record, given = found[0], [found[1]]
+        else:
+            maps.append(_describe(path))
+            continue
+        records[record.path] = record
+        names += given
+    if len(records) > 1:
+        both = " and ".join(map(str, records))
+        raise InputError(f"The maps belong to {both}; give the maps of one texture.")
+    record = next(iter(records.values()), None)
+    if record is not None:
+        maps += record.list_inputs(names, original)
+    return ShaderMaps(maps, record)
 
 
 def _describe(path: Path) -> ShaderMap:
+    if TOKEN in path.name:
+        raise InputError(
+            f"{path} is a set of tiles without the NAME_maps.json of skinnet invert beside it; "
+            "make the maps by skinnet invert, and give that."
+        )
     try:
         with path.open("rb") as file:
             head = file.read(_AHEAD)
@@ -92,7 +124,8 @@ def _describe_png(path: Path, head: bytes) -> ShaderMap:
         held = f"the map {name!r}" if name else "no map with a scale"
         raise InputError(
             f"{path} holds {held}; a shader takes maps of melanin, hemoglobin and the offset, as "
-            "skinnet invert and skinnet maps write them."
+            "skinnet invert and skinnet maps write them; the maps of skinnet invert need their "
+            "NAME_maps.json beside them."
         )
     levels = (1 << struct.unpack(">IIBBBBB", header[:13])[2]) - 1
     scale, offset = (_read_number(path, texts, key) for key in ("scale", "offset"))

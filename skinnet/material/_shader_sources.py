@@ -8,7 +8,7 @@ from string import Template
 from typing import Any, NamedTuple
 
 from skinnet._version import __version__
-from skinnet.material._shader_maps import ShaderMap
+from skinnet.material._map_records import ShaderMap
 from skinnet.material._skin_table import SkinTable
 
 NAME = "skin"
@@ -16,6 +16,9 @@ NAME = "skin"
 
 TABLE = f"{NAME}_table"
 """Stem of the table's files."""
+
+_SPACES = {"raw": "none", "srgb": "srgb_texture", "linear": "lin_rec709"}
+"""Colour spaces in MaterialX."""
 
 _TEMPLATES = Path(__file__).parent / "shaders"
 
@@ -89,9 +92,11 @@ def write_materialx(source: ShaderSource) -> str:
     nodes, connections = [], []
     for each in source.maps:
         name = each.input.lower()
-        kind = "color3" if name == "offset" else "float"
+        kind = "color3" if name in ("original", "offset") else "float"
         nodes.append(_write_map(name, kind, source.relative(each.path), each))
         connections.append(f'      <input name="{name}" type="{kind}" nodename="{name}_value" />\n')
+        if name == "original":
+            connections.append('      <input name="keep" type="float" value="1" />\n')
     more = {"maps": "".join(nodes), "connections": "".join(connections)}
     return _fill("skin.mtlx", source.constants | _scale_axes(source) | more)
 
@@ -123,9 +128,10 @@ def _scale_axes(source: ShaderSource) -> dict[str, float]:
 
 
 def _write_map(name: str, kind: str, file: str, settings: ShaderMap) -> str:
+    space = _SPACES[settings.space]
     return f"""\
     <image name="{name}_map" type="{kind}">
-      <input name="file" type="filename" value="{_escape(file)}" colorspace="none" />
+      <input name="file" type="filename" value="{_escape(file)}" colorspace="{space}" />
     </image>
     <multiply name="{name}_scaled" type="{kind}">
       <input name="in1" type="{kind}" nodename="{name}_map" />

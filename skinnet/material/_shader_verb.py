@@ -27,22 +27,48 @@ def shader(options: argparse.Namespace) -> None:
     """Write the table, and the shader of each target."""
     targets = [each for each in TARGETS if each in (options.target or TARGETS)]
     blender = find_blender(options.blender) if "blender" in targets else ()
-    source = _make_source(options)
+    source, notes = _make_source(options)
     files = _list_files(source.folder, targets, bool(blender))
     _refuse_existing(files, options.overwrite)
     make_folder(source.folder, "choose another folder with -o")
     _write(source, targets)
-    if blender:
-        with write_atomically(source.folder / f"{NAME}.blend") as part:
-            write_blend(part, blender, source.folder / WRITERS["blender"][0])
-    notes = [_NO_BLENDER] if "blender" in targets and not blender else []
+    if "blender" in targets and not blender:
+        notes.append(_NO_BLENDER)
+    if blender and (fault := _make_blend(source, blender, asked=options.blender is not None)):
+        notes.append(fault)
+        files.remove(source.folder / f"{NAME}.blend")
     _print(source, files, targets, notes, options.json)
 
 
-def _make_source(options: argparse.Namespace) -> ShaderSource:
-    table = tabulate_skin(options.light, options.camera, options.size)
-    light, camera = (_shorten(each) for each in (options.light, options.camera))
-    return ShaderSource(table, light, camera, describe_maps(options.maps), options.output)
+def _make_blend(source: ShaderSource, blender: tuple[str, ...], asked: bool) -> str | None:
+    """Make the .blend; where the user did not name a Blender, a fault is a sentence alone."""
+    try:
+        with write_atomically(source.folder / f"{NAME}.blend") as part:
+            write_blend(part, blender, source.folder / WRITERS["blender"][0])
+    except InputError as error:
+        if asked:
+            raise
+        return str(error)
+    return None
+
+
+def _make_source(options: argparse.Namespace) -> tuple[ShaderSource, list[str]]:
+    """Make what is written, and sentences about it."""
+    found = describe_maps(options.maps, options.original)
+    record = found.record
+    light = options.light or (record.light if record else "D65")
+    camera = options.camera or (record.camera if record else "observer")
+    maps, notes, transform = found.maps, [], record.transform if record else None
+    if record and (light, camera) != (record.light, record.camera):
+        maps = [each for each in maps if each.input not in ("Original", "Offset")]
+        transform = None
+        notes.append(
+            f"The maps were made for light {record.light} and camera {record.camera}, and the "
+            f"table is for {light} and {camera}: it shows skin alone, without the texture's offset "
+            "and colour transform, which hold for the maps' light."
+        )
+    table = tabulate_skin(light, camera, options.size, transform)
+    return ShaderSource(table, _shorten(light), _shorten(camera), maps, options.output), notes
 
 
 def _shorten(name: str) -> str:

@@ -29,7 +29,10 @@ class SkinTable(NamedTuple):
 
 
 def tabulate_skin(
-    light: str = "D65", camera: str = "observer", size: tuple[int, int] = (256, 128)
+    light: str = "D65",
+    camera: str = "observer",
+    size: tuple[int, int] = (256, 128),
+    transform: Float64[np.ndarray, "3 3"] | None = None,
 ) -> SkinTable:
     """Compute the colours of skin under a light and a camera.
 
@@ -40,6 +43,7 @@ def tabulate_skin(
         light: Name or file, as of `load_light`.
         camera: Name or file, as of `load_camera`.
         size: Nodes of melanin and of hemoglobin, 16 to 2,048.
+        transform: Colour transform that multiplies the model's RGB from the left; None: none.
 
     Returns:
         The table.
@@ -65,8 +69,6 @@ def tabulate_skin(
     )
     with torch.no_grad():
         colours = skin(f_mel[None, :], f_blood[:, None]) @ matrix
+        if transform is not None:
+            colours = colours @ torch.from_numpy(transform.T.copy())
     return SkinTable(colours.numpy().astype(np.float32), *axes)
-
-
-def _list_nodes(axis: PigmentAxis) -> Float64[torch.Tensor, "nodes"]:
-    return torch.from_numpy(axis.fractions(np.arange(axis.nodes, dtype=np.float64)))

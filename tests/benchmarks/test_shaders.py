@@ -43,4 +43,4 @@ def test_materialx_finds_no_fault_in_the_document(patches: ShaderPatches, tmp_pa
     with pytest.raises(ValueError, match="x"):
         load(tmp_path / "bad.mtlx")
     made = generate(patches.folder / "skin.mtlx", {})
-    assert made.textures.keys() == {"table", "melanin", "hemoglobin"}
+    assert made.textures.keys() == {"table", "melanin", "hemoglobin", "skin", "original"}

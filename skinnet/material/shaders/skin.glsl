@@ -28,11 +28,25 @@ vec2 skin_pigments(float melanin, float hemoglobin, SkinEdit edit) {
                0.0, 1.0);
 }
 
-vec3 skin_albedo(sampler2D table, float melanin, float hemoglobin, vec3 offset, SkinEdit edit) {
+vec3 skin_colour(sampler2D table, vec2 pigments) {
   const vec2 spacing = vec2($melanin_spacing, $hemoglobin_spacing);
   const vec2 nodes = vec2($columns.0, $rows.0);
-  vec2 fraction = skin_pigments(melanin, hemoglobin, edit);
-  vec2 position = log(1.0 + fraction / spacing) / log(1.0 + 1.0 / spacing);
-  vec2 uv = (position * (nodes - 1.0) + 0.5) / nodes;
-  return max(textureLod(table, uv, 0.0).rgb + offset, 0.0);
+  vec2 position = log(1.0 + clamp(pigments, 0.0, 1.0) / spacing) / log(1.0 + 1.0 / spacing);
+  return textureLod(table, (position * (nodes - 1.0) + 0.5) / nodes, 0.0).rgb;
+}
+
+// What is not skin in the texture that the maps were made from: its linear sRGB less that of skin.
+vec3 skin_offset(sampler2D table, float melanin, float hemoglobin, vec3 original) {
+  return original - skin_colour(table, vec2(melanin, hemoglobin));
+}
+
+// offset: as of skin_offset, or 0. It darkens with the skin, and never grows.
+// weight: how far edits apply: the map of skin, or 1.
+vec3 skin_albedo(sampler2D table, float melanin, float hemoglobin, vec3 offset, float weight,
+                 SkinEdit edit) {
+  vec2 pigments = vec2(melanin, hemoglobin);
+  vec2 edited = mix(pigments, skin_pigments(melanin, hemoglobin, edit), weight);
+  vec3 before = skin_colour(table, pigments), after = skin_colour(table, edited);
+  vec3 ratio = clamp(max(after, 1e-6) / max(before, 1e-6), 0.0, 1.0);
+  return max(after + offset * ratio, 0.0);
 }

@@ -29,10 +29,19 @@ _SOCKETS = (
     ("Pulse", 0, (0, 10), "Share of blood that each heartbeat adds"),
     ("Pulse Rate", 70, (0, 300), "Beats per minute"),
     ("Time", 0, (-1e6, 1e6), "Seconds; the material drives it by the frame"),
+    ("Skin", 1, (0, 1), "How far edits apply: the map of skin"),
+    ("Keep", 0, (0, 1), "Share that is kept of what is not skin in the original"),
 )
 """Name, value, range and description of each number that the group takes."""
 
-_NOT_COLOURS = "Non-Color"
+_COLOURS = (
+    ("Original", "Texture that the maps were made from"),
+    ("Offset", "Linear colour of what is not skin, where there is no original"),
+)
+"""Name and description of each colour that the group takes."""
+
+_SPACES = {"raw": "Non-Color", "srgb": "sRGB", "linear": "Linear Rec.709"}
+_BLACK = 1e-6
 
 
 class _Graph:
@@ -79,18 +88,40 @@ def _make_group() -> Any:
         )
         socket.min_value, socket.max_value = low, high
         socket.default_value = value
-    offset = group.interface.new_socket(
-        "Offset", in_out="INPUT", socket_type="NodeSocketColor", description="What is not skin"
-    )
-    offset.default_value = (0, 0, 0, 1)
+    for name, description in _COLOURS:
+        socket = group.interface.new_socket(
+            name, in_out="INPUT", socket_type="NodeSocketColor", description=description
+        )
+        socket.default_value = (0, 0, 0, 1)
     group.interface.new_socket("Albedo", in_out="OUTPUT", socket_type="NodeSocketColor")
     graph = _Graph(group)
     given = graph.add("NodeGroupInput", {}).outputs
-    albedo = _look_up(graph, _edit_melanin(graph, given), _edit_blood(graph, given))
-    whole = graph.compute_vector("ADD", albedo, given["Offset"])
-    positive = graph.compute_vector("MAXIMUM", whole, (0, 0, 0))
-    graph.add("NodeGroupOutput", {"Albedo": positive})
+    table = _load_table()
+    before = _look_up(graph, table, given["Melanin"], given["Hemoglobin"])
+    edited = (
+        _weigh(graph, given, "Melanin", _edit_melanin(graph, given)),
+        _weigh(graph, given, "Hemoglobin", _edit_blood(graph, given)),
+    )
+    after = _look_up(graph, table, *edited)
+    whole = _add_offset(graph, given, before, after)
+    graph.add("NodeGroupOutput", {"Albedo": graph.compute_vector("MAXIMUM", whole, (0, 0, 0))})
     return group
+
+
+def _weigh(graph: _Graph, given: Any, name: str, edited: Any) -> Any:
+    """Edit what is skin alone."""
+    change = graph.compute("SUBTRACT", edited, given[name])
+    return graph.compute("MULTIPLY_ADD", change, given["Skin"], given[name])
+
+
+def _add_offset(graph: _Graph, given: Any, before: Any, after: Any) -> Any:
+    """Add what is not skin, which darkens with the skin and never grows."""
+    rest = graph.compute_vector("SUBTRACT", given["Original"], before)
+    offset = graph.compute_vector("MULTIPLY_ADD", rest, given["Keep"], given["Offset"])
+    positive = [graph.compute_vector("MAXIMUM", one, (_BLACK,) * 3) for one in (after, before)]
+    ratio = graph.compute_vector("DIVIDE", *positive)
+    factor = graph.compute_vector("MINIMUM", ratio, (1, 1, 1))
+    return graph.compute_vector("MULTIPLY_ADD", offset, factor, after)
 
 
 def _edit_melanin(graph: _Graph, given: Any) -> Any:
@@ -111,13 +142,17 @@ def _edit_blood(graph: _Graph, given: Any) -> Any:
     return graph.compute("MULTIPLY", edited, blood, clamp=True)
 
 
-def _look_up(graph: _Graph, melanin: Any, hemoglobin: Any) -> Any:
-    axes = (melanin, "melanin_spacing", "columns"), (hemoglobin, "hemoglobin_spacing", "rows")
-    places = [_place(graph, value, _SETTINGS[name], _SETTINGS[size]) for value, name, size in axes]
-    vector = graph.add("ShaderNodeCombineXYZ", dict(enumerate(places))).outputs[0]
+def _load_table() -> Any:
     image = bpy.data.images.load(str(_FOLDER / _SETTINGS["table"]))
     image.colorspace_settings.name = "Linear Rec.709"
     image.pack()
+    return image
+
+
+def _look_up(graph: _Graph, image: Any, melanin: Any, hemoglobin: Any) -> Any:
+    axes = (melanin, "melanin_spacing", "columns"), (hemoglobin, "hemoglobin_spacing", "rows")
+    places = [_place(graph, value, _SETTINGS[name], _SETTINGS[size]) for value, name, size in axes]
+    vector = graph.add("ShaderNodeCombineXYZ", dict(enumerate(places))).outputs[0]
     table = {"image": image, "interpolation": "Linear", "extension": "EXTEND"}
     return graph.add("ShaderNodeTexImage", {"Vector": vector}, **table).outputs["Color"]
 
@@ -141,6 +176,7 @@ def _make_material(group: Any) -> Any:
     skin.location = (600, 0)
     for name, value in maps.items():
         graph.tree.links.new(value, skin.inputs[name])
+    skin.inputs["Keep"].default_value = float("Original" in maps)
     _drive_time(skin.inputs["Time"])
     look = {"Base Color": skin.outputs["Albedo"], "Roughness": 0.45, "IOR": 1.4}
     surface = graph.add("ShaderNodeBsdfPrincipled", look).outputs[0]
@@ -151,14 +187,29 @@ def _make_material(group: Any) -> Any:
 
 def _add_map(graph: _Graph, settings: dict[str, Any]) -> Any:
     """Add a map: its file holds numbers, and value = scale * number + offset."""
-    image = bpy.data.images.load(str((_FOLDER / settings["file"]).resolve()))
-    image.colorspace_settings.name = _NOT_COLOURS
-    node = graph.add("ShaderNodeTexImage", {}, image=image, label=settings["input"])
+    node = graph.add("ShaderNodeTexImage", {}, image=_load_map(settings), label=settings["input"])
+    if settings["input"] == "Original":
+        return node.outputs["Color"]
     scale, offset = settings["scale"], settings["offset"]
     if settings["input"] == "Offset":
         terms = node.outputs["Color"], (scale,) * 3, (offset,) * 3
         return graph.compute_vector("MULTIPLY_ADD", *terms)
     return graph.compute("MULTIPLY_ADD", node.outputs["Color"], scale, offset)
+
+
+def _load_map(settings: dict[str, Any]) -> Any:
+    """Load a file, or the files of all tiles."""
+    path, tiles = str((_FOLDER / settings["file"]).resolve()), settings["tiles"]
+    image = bpy.data.images.load(path.replace("<UDIM>", str(tiles[0]) if tiles else ""))
+    image.colorspace_settings.name = _SPACES[settings["space"]]
+    if not path.endswith(".exr"):
+        image.alpha_mode = "CHANNEL_PACKED"  # colours are not multiplied by alpha
+    if tiles:
+        image.source, image.filepath = "TILED", path
+        image.tiles[0].number = tiles[0]
+        for tile in tiles[1:]:
+            image.tiles.new(tile)
+    return image
 
 
 def _drive_time(socket: Any) -> None:

@@ -146,6 +146,116 @@ def test_a_blender_that_fails_leaves_the_other_files_whole(
     assert names == {"skin_table.exr", "skin_table.png", "skin_blender.py"}
 
 
+def test_a_blender_that_nobody_named_may_fail(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    broken = tmp_path / "bin" / "blender"
+    broken.parent.mkdir()
+    broken.write_text("#!/bin/sh\necho no display >&2\nexit 1\n", encoding="utf-8")
+    broken.chmod(0o755)
+    monkeypatch.setenv("PATH", str(broken.parent), prepend=":")
+    out = tmp_path / "out"
+    assert main(["shader", "--json", "--size", "16x16", "-o", str(out)]) == 0
+    said = capsys.readouterr()
+    found = json.loads(said.out)
+    assert {Path(each) for each in found["files"]} == {*out.iterdir()}
+    assert not (out / "skin.blend").exists() and (out / "skin_blender.py").exists()
+    assert "no display" in said.err and found["notes"]
+
+
+@pytest.fixture(scope="module")
+def inverted(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """A small texture under light A, as two UDIM tiles and alone, with its maps."""
+    folder: Path = tmp_path_factory.mktemp("inverted")
+    pixels = np.full((8, 8, 3), (200, 160, 140), np.uint8)
+    pixels[0] = (0, 90, 20)
+    for name in ("one.png", "set.1001.png", "set.1002.png"):
+        write_png(folder / name, pixels)
+    for name in ("one.png", "set.<UDIM>.png"):
+        assert main(["invert", "-q", str(folder / name), "--light", "A", "-o", str(folder)]) == 0
+    return folder
+
+
+def run(capsys: pytest.CaptureFixture[str], *words: object) -> tuple[Any, str]:
+    flags = ("--json", "--size", "16x16", "--target", "materialx", "--target", "osl")
+    assert main(["shader", *flags, *map(str, words)]) == 0
+    said = capsys.readouterr()
+    return json.loads(said.out), said.err
+
+
+def test_the_table_has_the_light_of_the_maps(
+    inverted: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    maps = inverted / "one_maps.json"
+    found, said = run(capsys, maps, "-o", tmp_path / "a")
+    assert (found["light"], found["camera"], said) == ("A", "observer", "")
+    assert found["maps"].keys() == {"melanin", "hemoglobin", "skin", "original"}
+    assert Path(found["maps"]["original"]).samefile(inverted / "one.png")
+    pigments = [inverted / f"one_{name}.png" for name in ("melanin", "hemoglobin")]
+    found, said = run(capsys, *pigments, "-o", tmp_path / "b")
+    assert (found["light"], said) == ("A", "")
+    assert found["maps"].keys() == {"melanin", "hemoglobin"}
+    found, said = run(capsys, maps, "--light", "D65", "-o", tmp_path / "c")
+    assert "were made for light A" in said and "for D65 and observer" in said
+    assert found["maps"].keys() == {"melanin", "hemoglobin", "skin"}
+
+
+def test_the_table_has_the_colour_transform_of_the_maps(
+    inverted: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    plain, moved = inverted / "one_maps.json", inverted / "moved_maps.json"
+    record = json.loads(plain.read_text("utf-8"))
+    record["transform"] = [[0, 2, 0], [1, 0, 0], [0, 0, 1]]
+    moved.write_text(json.dumps(record), "utf-8")
+    run(capsys, plain, "-o", tmp_path / "a")
+    run(capsys, moved, "-o", tmp_path / "b")
+    red, green, blue = np.moveaxis(read_table(tmp_path / "a"), -1, 0)
+    np.testing.assert_allclose(
+        read_table(tmp_path / "b"), np.stack([2 * green, red, blue], -1), rtol=1e-5, atol=1e-6
+    )
+
+
+def test_tiles_of_a_set_are_one_map(
+    inverted: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    found, _ = run(capsys, inverted / "set_maps.json", "-o", tmp_path / "a")
+    assert found["maps"]["melanin"].endswith("set_melanin.<UDIM>.png")
+    assert found["maps"]["original"].endswith("set.<UDIM>.png")
+    text = (tmp_path / "a" / "skin.mtlx").read_text("utf-8")
+    assert "set_melanin.&lt;UDIM&gt;.png" in text
+    tiles = [inverted / f"set_{each}.1002.png" for each in ("melanin", "hemoglobin")]
+    found, _ = run(capsys, *tiles, "-o", tmp_path / "b")
+    assert found["maps"]["melanin"].endswith("set_melanin.<UDIM>.png")
+
+
+def test_a_texture_that_is_not_the_one_of_the_maps_is_refused(
+    inverted: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    for file in inverted.glob("one*"):
+        (tmp_path / file.name).write_bytes(file.read_bytes())
+    maps, texture, out = tmp_path / "one_maps.json", tmp_path / "one.png", tmp_path / "out"
+    write_png(texture, np.zeros((8, 8, 3), np.uint8))
+    assert "has changed since" in refuse(capsys, maps, "-o", out)
+    texture.unlink()
+    assert "is not there; give it by --original" in refuse(capsys, maps, "-o", out)
+    write_png(texture, np.zeros((9, 8, 3), np.uint8))
+    assert "is 8 x 9 and its maps are 8 x 8" in refuse(
+        capsys, maps, "--original", texture, "-o", out
+    )
+    assert "needs the maps" in refuse(capsys, "--original", texture, "-o", out)
+    (tmp_path / "two.<UDIM>.png").write_bytes(b"")
+    assert "a set of tiles without" in refuse(capsys, tmp_path / "two.<UDIM>.png", "-o", out)
+    both = (inverted / "one_melanin.png", inverted / "set_hemoglobin.1001.png")
+    assert "maps of one texture" in refuse(capsys, *both, "-o", out)
+    broken = tmp_path / "bad_maps.json"
+    broken.write_text(json.dumps({"tiles": []}), "utf-8")
+    assert "is not a NAME_maps.json" in refuse(capsys, broken, "-o", out)
+    assert not out.exists()
+    original = ("--original", inverted / "one.png", "-o", out)
+    found, _ = run(capsys, maps, *original)
+    assert found["maps"]["original"] == str(inverted / "one.png")
+
+
 @pytest.mark.slow
 def test_blender_saves_the_node_group_with_its_table(tmp_path: Path) -> None:
     if not BLENDER.exists():
