@@ -1,5 +1,6 @@
 """Maps that `skinnet invert` wrote, with the texture they were made from, as inputs of a shader."""
 
+import json
 import os
 from collections.abc import Iterable
 from pathlib import Path
@@ -9,6 +10,7 @@ import numpy as np
 from jaxtyping import Float64
 
 from skinnet.errors import InputError
+from skinnet.files._reading import MOST_TEXT, read_file
 from skinnet.material._map_files import RECORD_END, WHITES, compute_set_digest, read_record
 from skinnet.material._texture_file import open_texture
 from skinnet.material._udim import TOKEN
@@ -71,7 +73,7 @@ class MapRecord(NamedTuple):
     def name(self, name: str) -> Path:
         """Name the file of a map, or the pattern of its tiles."""
         first = self.content["tiles"][0]
-        file = first["files"][name]
+        file: str = first["files"][name]
         if self.tiles:
             before, _, after = file.rpartition(f".{first['tile']}")
             file = f"{before}.{TOKEN}{after}"
@@ -159,9 +161,18 @@ def find_record(path: Path) -> tuple[MapRecord, str] | None:
     for name in _WRITTEN:
         stem, found, _ = path.name.rpartition(f"_{name}.")
         beside = path.with_name(stem + RECORD_END)
-        if found and beside.is_file():
+        if found and beside.is_file() and not _is_foreign(beside):
             record = open_record(beside)
             files = [record.name(name), *_list_tiles(record.name(name), record.tiles)]
             if path.name in {each.name for each in files}:
                 return record, name
     return None
+
+
+def _is_foreign(path: Path) -> bool:
+    """Whether another verb, such as skinnet maps, wrote a record; a damaged one is not."""
+    try:
+        content = json.loads(read_file(path, MOST_TEXT))
+    except (OSError, ValueError):
+        return False
+    return isinstance(content, dict) and "tiles" not in content

@@ -83,10 +83,10 @@ def _gather(paths: Sequence[Path], original: Path | None) -> ShaderMaps:
     if len(records) > 1:
         both = " and ".join(map(str, records))
         raise InputError(f"The maps belong to {both}; give the maps of one texture.")
-    record = next(iter(records.values()), None)
-    if record is not None:
-        maps += record.list_inputs(names, original)
-    return ShaderMaps(maps, record)
+    whole = next(iter(records.values()), None)
+    if whole is not None:
+        maps += whole.list_inputs(names, original)
+    return ShaderMaps(maps, whole)
 
 
 def _describe(path: Path) -> ShaderMap:

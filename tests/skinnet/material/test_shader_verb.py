@@ -77,10 +77,12 @@ def test_json_lists_files_that_are_there(
 
 def test_maps_are_decoded_by_their_own_scale(tmp_path: Path) -> None:
     maps = [write_map(tmp_path / "a.png", "f_mel"), write_map(tmp_path / "b.png", "hemoglobin")]
+    (tmp_path / "face_maps.json").write_text(json.dumps({"settings": {}}), "utf-8")
+    maps[0] = maps[0].rename(tmp_path / "face_melanin.png")
     out = tmp_path / "deep" / "shader"
     assert main(["shader", "-q", *map(str, maps), "-o", str(out), "--target", "materialx"]) == 0
     text = (out / "skin.mtlx").read_text(encoding="utf-8")
-    assert 'value="../../a.png"' in text and 'value="../../b.png"' in text
+    assert 'value="../../face_melanin.png"' in text and 'value="../../b.png"' in text
     assert f'value="{1e-6 * 65535!r}"' in text
 
 
