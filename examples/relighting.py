@@ -50,8 +50,7 @@ def draw(options: argparse.Namespace) -> None:
     choose_variant(options.variant)
     lightstage.study(options.lightstage, options.people, options.texels, [])
     maps = [options.lightstage / f"skinmaps/person_{k:02}_maps.npz" for k in range(options.people)]
-    faces = sorted((load_maps(file) for file in maps), key=lambda face: measure_melanin(face[0]))
-    chosen = [faces[k] for k in np.linspace(0, len(faces) - 1, 3).astype(int)]
+    chosen = choose_faces([load_maps(file) for file in maps])
     tiles = [tile for texture, colour in chosen for tile in draw_row(texture, colour, options)]
     sheet = draw_grid(tiles, 1 + len(LIGHTS) + len(EDITS))
     half = resize(sheet, sheet.shape[1] // 2, sheet.shape[0] // 2)
@@ -67,6 +66,15 @@ def choose_variant(name: str) -> None:
     if name not in mitsuba.variants():
         raise InputError(f"Mitsuba has no variant {name}; it has {', '.join(mitsuba.variants())}.")
     mitsuba.set_variant(name)
+
+
+def choose_faces(
+    faces: list[tuple[SkinTexture, SkinColour]],
+) -> list[tuple[SkinTexture, SkinColour]]:
+    """Choose the lightest and the darkest face, and the one between them on a logarithmic scale."""
+    melanin = np.log([max(measure_melanin(texture), 1e-3) for texture, _ in faces])
+    levels = np.linspace(melanin.min(), melanin.max(), 3)
+    return [faces[int(np.abs(melanin - level).argmin())] for level in levels]
 
 
 def measure_melanin(texture: SkinTexture) -> float:

@@ -259,14 +259,16 @@ def test_a_texture_that_is_not_the_one_of_the_maps_is_refused(
 
 
 @pytest.mark.slow
-def test_blender_saves_the_node_group_with_its_table(tmp_path: Path) -> None:
+def test_blender_saves_the_node_group_with_its_table(inverted: Path, tmp_path: Path) -> None:
     if not BLENDER.exists():
         pytest.skip("Blender is not installed: make blender")
     flags = ["--target", "blender", "--size", "32x32", "--blender", str(BLENDER)]
-    assert main(["shader", "-q", "-o", str(tmp_path / "out"), *flags]) == 0
+    maps = str(inverted / "set_maps.json")
+    assert main(["shader", "-q", maps, "-o", str(tmp_path / "out"), *flags]) == 0
     found = open_blend(tmp_path / "out" / "skin.blend")
     assert found["group"] == ["Skin"] and found["material"] == ["Skin"]
-    assert found["packed"] == [True]
+    assert found["packed"] == {"FILE": [True], "TILED": [False] * 4}
+    assert found["tiles"] == [[1001, 1002]] * 4
     assert found["driver"] == "frame * base / fps"
     assert math.isclose(found["time"], 48 / 24, abs_tol=1e-6)
 
@@ -284,7 +286,10 @@ group = next(node for node in tree.nodes if node.bl_idname == "ShaderNodeGroup")
 print("found", json.dumps({{
   "group": [each.name for each in bpy.data.node_groups],
   "material": [each.name for each in bpy.data.materials if each.name == "Skin"],
-  "packed": [each.packed_file is not None for each in bpy.data.images if each.filepath],
+  "packed": {{kind: [each.packed_file is not None for each in bpy.data.images
+    if each.filepath and each.source == kind] for kind in ("FILE", "TILED")}},
+  "tiles": [[tile.number for tile in each.tiles] for each in bpy.data.images
+    if each.source == "TILED"],
   "driver": material.node_tree.animation_data.drivers[0].driver.expression,
   "time": group.inputs["Time"].default_value}}))
 """
