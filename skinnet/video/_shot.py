@@ -19,6 +19,7 @@ from skinnet.video._readings import HIDDEN, LOST, READ, Reading, make_blank
 from skinnet.video._regions import FACE, NAMES
 from skinnet.video._resting_maps import Look, RestingMaps, pool_looks, read_look
 from skinnet.video._texture_space import SIZE, TextureSpace, sample
+from skinnet.video._tone_doubt import ToneDoubt
 
 _LEAST_TEXELS = 12
 _LEAST_SHARE = 0.4
@@ -85,6 +86,7 @@ class Shot:
         self._decomposer, self.number, self.start = decomposer, number, start
         self._baseline, self._wanted = baseline, looks
         self._colours, self._capture, self._with_maps = colours, capture, with_maps
+        self._doubt = ToneDoubt(colours.tone)
         self._space: TextureSpace | None = None
         self._buffer: list[_Buffered] = []
         self._looks: list[tuple[Look, int]] = []
@@ -199,6 +201,8 @@ class Shot:
         regions = self.space.regions[:, self.space.inside]
         self._regions = regions & usable
         self._areas = self._regions.sum(1)
+        area = np.maximum(self._areas, 1)[:, None]
+        self._levels = self._regions @ np.where(usable[:, None], base, 0).astype(np.float64) / area
 
     def _warm_up(self, waiting: list[_Buffered]) -> None:
         """Learn the noise from the baseline, before its first frame is solved.
@@ -251,8 +255,11 @@ class Shot:
             self._noise.add(time, ratios)
         noise = self._noise_factor * self._noise.covariance
         noise = noise + (_CHROMA_BY_BEND * bend) ** 2 * np.eye(3)
+        shown = np.where(read[:, None], ratios, 0.0)
+        # Red answers least to blood, so that its ratio tells how much light there is.
+        noise = noise + self._doubt.find_covariance(self._levels, shown[:, 0])
         gloss = _GLOSS_SD + _GLOSS_BY_BEND * bend**2
-        found = self._response.solve(np.where(read[:, None], ratios, 0.0), noise, gloss)
+        found = self._response.solve(shown, noise, gloss)
         change = np.where(read, found.change, np.nan)
         sd = np.where(read, np.hypot(found.sd, self._scale_sd * found.change), np.nan)
         base, base_sd = self.resting_blood()
