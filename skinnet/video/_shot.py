@@ -32,6 +32,9 @@ _GLOSS_SD, _GLOSS_BY_BEND = 0.006, 0.5
 """Standard deviation of the change of gloss, in shares of a region's green light, of a still head,
 and by how much it grows with the bend of the mesh."""
 
+_GLOSS_BY_SHADING = 0.5
+"""How much gloss may change with shading, where the head turns in the light."""
+
 _CHROMA_BY_BEND = 0.05
 """Standard deviation of log colour for each unit of bend, by which the mesh slides on the skin."""
 
@@ -262,7 +265,7 @@ class Shot:
         shown = np.where(read[:, None], ratios, 0.0)
         # Red answers least to blood, so that its ratio tells how much light there is.
         noise = noise + self._doubt.find_covariance(self._levels, shown[:, 0])
-        gloss = _GLOSS_SD + _GLOSS_BY_BEND * bend**2
+        gloss = _GLOSS_SD + _GLOSS_BY_BEND * bend**2 + _GLOSS_BY_SHADING * _spread_shading(ratios)
         found = self._response.solve(shown, noise, gloss)
         change = np.where(read, found.change, np.nan)
         sd = np.where(read, np.hypot(found.sd, self._scale_sd * found.change), np.nan)
@@ -344,6 +347,13 @@ class Shot:
         texture[hidden] = np.nan
         assert texture.shape == (SIZE, SIZE)
         return np.asarray(texture, np.float32)
+
+
+def _spread_shading(ratios: Array) -> float:
+    """Standard deviation over the regions [regions, 3] of their gain: exposure is common to all."""
+    gains = ratios[1:, 0]
+    known = gains[np.isfinite(gains)]
+    return float(known.std()) if len(known) > 1 else 0.0
 
 
 def _compare_spreads(ratios: Array, noise: Array) -> Array:
