@@ -39,11 +39,11 @@ _CHROMA_BY_BEND = 0.05
 """Standard deviation of log colour for each unit of bend, by which the mesh slides on the skin."""
 
 _SCALE_SD, _SCALE_BY_TONE, _MOST_SCALE_SD = 0.22, 0.10, 0.36
-"""Relative standard deviation of a change from melanin .1 on, by how much it grows with the negative
-logarithm of less melanin, and its most. Skins differ in what else they are made of (see
-`_blood_response._ANSWER`), and tone curves scale colours. It is that of the slopes of read over true
-changes in 27 synthetic clips, which are not those of the benchmark. What the uncertainty of the
-resting maps adds is computed."""
+"""Relative standard deviation of a change from melanin .1 on, by how much it grows with the
+negative logarithm of less melanin, and its most. Skins differ in what else they are made of (see
+`_blood_response._ANSWER`), and tone curves scale colours. It is that of the slopes of read over
+true changes in 27 synthetic clips, which are not those of the benchmark. What the uncertainty of
+the resting maps adds is computed."""
 
 _MOST_FACTOR = 25.0
 """Largest factor on the noise by the spread of the baseline; more is a movement."""
