@@ -68,8 +68,8 @@ def estimate_pulse(times: Array, ratios: Array, method: Callable[[Array], Array]
         signal = filter_band(method(colours)[:, None])[:, 0]
         summary.add(PulseEstimate(end, *find_peak(signal)))
         end += _EVERY
-    rate = summary.describe()["rate_bpm"]
-    return None if rate is None else float(rate)
+    rate = summary.find_median()
+    return rate if np.isfinite(rate) else None
 
 
 def _resample(times: Array, colours: Array) -> Array:

@@ -78,7 +78,7 @@ def score_clip(
         truth = np.stack([renderer.true_change(time) for time in renderer.times.tolist()])
         frames = list(VideoFrames(path, f"clip {number}"))
     try:
-        track, readings = follow(decomposer, frames)
+        track, readings, rate = follow(decomposer, frames)
     except InputError:
         return None
     times = np.array([one.time for one in readings])
@@ -92,7 +92,7 @@ def score_clip(
         truth,
         np.stack([one.change for one in readings]),
         np.stack([one.change_sd for one in readings]),
-        _find_pulses(track, readings) | {one.name: one(frames) for one in peers},
+        _find_pulses(rate, readings) | {one.name: one(frames) for one in peers},
         bool(track.pulse["is_readable"]),
         right[0] if right else None,
         len(events) - len(right),
@@ -103,13 +103,13 @@ def score_clip(
 
 def follow(
     decomposer: Decomposer, frames: list[Frame], baseline: tuple[float, float] = (0.0, 3.0)
-) -> tuple[Track, list[Reading]]:
-    """Track frames. Returns the summary and all readings."""
+) -> tuple[Track, list[Reading], float]:
+    """Track frames. Returns the summary, all readings, and the pulse, readable or not."""
     tracker, readings = Tracker(decomposer, baseline=baseline, maps=False), []
     for frame in frames:
         readings += tracker.add(frame.pixels, frame.time)
     track = tracker.finish()
-    return track, readings + tracker.waiting
+    return track, readings + tracker.waiting, tracker._summary.find_median()
 
 
 def find_tone(melanin: float, hemoglobin: float) -> str:
@@ -119,11 +119,11 @@ def find_tone(melanin: float, hemoglobin: float) -> str:
     return "light" if degrees > LIGHT else "dark" if degrees < DARK else "medium"
 
 
-def _find_pulses(track: Track, readings: list[Reading]) -> dict[str, float | None]:
+def _find_pulses(rate: float, readings: list[Reading]) -> dict[str, float | None]:
     face = NAMES.index(FACE)
     rows = [(one.time, *one.ratios[face]) for one in readings if one.state == "read"]
     values = np.array(rows)
-    pulses: dict[str, float | None] = {"skinnet": track.pulse["rate_bpm"]}
+    pulses: dict[str, float | None] = {"skinnet": rate if np.isfinite(rate) else None}
     for name, method in METHODS.items():
         pulses[name] = estimate_pulse(values[:, 0], values[:, 1:], method)
     return pulses
@@ -134,7 +134,7 @@ def _read_again(decomposer: Decomposer, frames: list[Frame]) -> float | None:
     half = frames[len(frames) // 2 :]
     some = [one for one in half if one.time <= half[0].time + _AGAIN + 0.1]
     try:
-        track, _ = follow(decomposer, some, (0.0, _AGAIN))
+        track, _, _ = follow(decomposer, some, (0.0, _AGAIN))
     except InputError:
         return None
     return float(track.melanin[FACE]["mean"])

@@ -80,12 +80,12 @@ def list_peers(folder: Path | None) -> list[PulsePeer]:
     """List the networks of a folder.
 
     Raises:
-        InputError: There is no such folder, or no network in it.
+        InputError: There is no such folder.
     """
     if folder is None:
         return []
+    if not folder.is_dir():
+        raise InputError(f"{folder} is no folder; give that of public networks as .onnx files.")
     files = sorted(folder.glob("*.onnx"))
-    if not files:
-        raise InputError(f"{folder} holds no .onnx file; give the folder of public networks.")
     taken = {*METHODS, "skinnet"}
     return [PulsePeer(path) for path in files if path.stem not in taken]

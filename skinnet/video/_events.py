@@ -9,7 +9,7 @@ _SMOOTH = 0.7
 """Seconds over which a change is smoothed: a heartbeat is no event."""
 
 _LEAST, _SIGMAS = 0.08, 2.0
-"""Least log change of an event, and how many of its own standard deviations it has at least."""
+"""Least log change of an event, and how many standard deviations of no change it has at least."""
 
 _SUSTAIN, _BACK = 1.5, 20.0
 """Seconds for which an event lasts at least, and over which its begin is looked for."""
@@ -62,12 +62,21 @@ class EventFinder:
         self._event: Event | None = None
         return open_event
 
-    def add(self, time: float, change: float, sd: float) -> Event | None:
-        """Add a change with its standard deviation. Returns an event that has ended."""
+    def add(
+        self, time: float, change: float, sd: float, noise: float | None = None
+    ) -> Event | None:
+        """Add a change with its standard deviation. Returns an event that has ended.
+
+        Args:
+            time: Time stamp in seconds.
+            change: Log ratio to the baseline.
+            sd: Its standard deviation.
+            noise: That of no change, without the doubt of a change's size; None: the same.
+        """
         if not np.isfinite(change):
             return None
         self._update(time, change)
-        least = max(_LEAST, _SIGMAS * sd)
+        least = max(_LEAST, _SIGMAS * (sd if noise is None else noise))
         if self._event is not None:
             return self._go_on(time, sd, least)
         if abs(self._smooth) < least:

@@ -5,9 +5,9 @@ import math
 import numpy as np
 from numpy.typing import NDArray
 
-from skinnet.images.srgb import srgb_to_linear
 from skinnet.inference._references.tone_curve import ToneCurve
 from skinnet.video._texture_space import Points, TextureSpace, measure_texel, sample
+from skinnet.video._tone_doubt import USUAL
 
 BRIGHTEST, DARKEST = 0.94, 0.0025
 """Linear light beyond which a texel is clipped, or too dark for a logarithm."""
@@ -19,13 +19,14 @@ class FrameColours:
     """Samples frames in a texture space, in linear light.
 
     Args:
-        tone: The camera's tone curve, which is undone; None: that of sRGB alone.
+        tone: The camera's tone curve, which is undone; None: the usual one.
     """
 
     def __init__(self, tone: ToneCurve | None = None) -> None:
+        self.tone = tone
         self._tone = tone if tone is not None and tone.saturation else None
         ramp = np.repeat(_RAMP[:, None] / 255.0, 3, 1)
-        table = srgb_to_linear(_RAMP) if tone is None else tone.undo(ramp)[:, 0]
+        table = (USUAL if tone is None else tone).undo(ramp)[:, 0]
         self._table = table.astype(np.float32)
         if self._tone is not None:
             self._table = (_RAMP / np.float32(255)).astype(np.float32)

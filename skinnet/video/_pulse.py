@@ -23,7 +23,12 @@ _LEAST_SEEN = 0.9
 _HALF_WIDTH = 0.1
 """Half of the width, in Hz, of the peak and of its first harmonic, which count as pulse."""
 
-_LEAST_QUALITY = 0.35
+LEAST_QUALITY = 0.35
+"""Quality below which a pulse cannot be read."""
+
+_NEAR, _LEAST_NEAR = 6.0, 0.7
+"""Beats per minute about the median, and the share of the estimates, weighed by their quality,
+that lies within them at least: what jumps is noise that looks like a rhythm."""
 
 Array = NDArray[np.float64]
 
@@ -162,15 +167,26 @@ class PulseSummary:
         self._quality += estimate.quality
 
     def describe(self) -> dict[str, float | int | bool | None]:
-        """Median rate weighed by quality, for JSON; None without an estimate."""
+        """Median rate weighed by quality, for JSON; `rate_bpm` is None if it cannot be read."""
         if not self._estimates:
             return {"rate_bpm": None, "quality": None, "is_readable": False, "estimates": 0}
-        share = np.cumsum(self._counts) / self._counts.sum()
-        rate = (int(np.searchsorted(share, 0.5)) + 0.5) * self._STEP
-        quality = self._quality / self._estimates
+        rate, quality = self.find_median(), self._quality / self._estimates
+        is_readable = quality >= LEAST_QUALITY and self._agree(rate)
         return {
-            "rate_bpm": rate,
+            "rate_bpm": rate if is_readable else None,
             "quality": round(quality, 4),
-            "is_readable": quality >= _LEAST_QUALITY,
+            "is_readable": is_readable,
             "estimates": self._estimates,
         }
+
+    def find_median(self) -> float:
+        """Median of the estimates weighed by quality, readable or not; NaN without any."""
+        if not self._estimates:
+            return float("nan")
+        share = np.cumsum(self._counts) / self._counts.sum()
+        return (int(np.searchsorted(share, 0.5)) + 0.5) * self._STEP
+
+    def _agree(self, rate: float) -> bool:
+        rates = (np.arange(len(self._counts)) + 0.5) * self._STEP
+        near = self._counts[np.abs(rates - rate) <= _NEAR].sum()
+        return bool(near >= _LEAST_NEAR * self._counts.sum())

@@ -28,6 +28,8 @@ class Reading(NamedTuple):
         texture: Log change over the face's texture, float32 [size, size]; None if not asked for.
         direction: Derivative of log RGB by log hemoglobin at rest, [regions, 3].
         resting: Hemoglobin over the texture at rest, float32 [size, size]; None without `texture`.
+        noise_sd: Standard deviation of `change` where it is 0: by noise, gloss and the tone curve,
+            without the doubt of its size, [regions].
     """
 
     number: int
@@ -43,6 +45,7 @@ class Reading(NamedTuple):
     texture: NDArray[np.float32] | None = None
     direction: Array | None = None
     resting: NDArray[np.float32] | None = None
+    noise_sd: Array | None = None
 
 
 def make_blank(number: int, time: float, shot: int, state: str, regions: int) -> Reading:

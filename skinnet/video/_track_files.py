@@ -16,6 +16,7 @@ from skinnet.images._mark import Mark
 from skinnet.images._png_file import write_png
 from skinnet.inference._uncertainty import find_factor
 from skinnet.video._map_frame import draw_map_frame
+from skinnet.video._pulse import LEAST_QUALITY
 from skinnet.video._readings import Reading
 from skinnet.video._regions import NAMES
 from skinnet.video._video_frames import _import_av
@@ -125,7 +126,7 @@ class TrackFiles:
                 _round(reading.change[index]),
                 _round(reading.change_sd[index]),
             ]
-        return cells + (["", ""] if pulse is None else [_round(each) for each in pulse])
+        return cells + _describe_pulse(pulse)
 
     def _add_map(self, reading: Reading) -> None:
         assert self._maps_path is not None
@@ -140,6 +141,14 @@ class TrackFiles:
         frame.pts, frame.time_base = round(reading.time * _TICKS), Fraction(1, _TICKS)
         for packet in self._stream.encode(frame):
             self._container.mux(packet)
+
+
+def _describe_pulse(pulse: tuple[float, float] | None) -> list[str]:
+    """Cells of the pulse; without its rate if that cannot be read."""
+    if pulse is None:
+        return ["", ""]
+    rate, quality = pulse
+    return [_round(rate) if quality >= LEAST_QUALITY else "", _round(quality)]
 
 
 def _add_stream(av: Any, container: Any, shape: tuple[int, ...]) -> Any:

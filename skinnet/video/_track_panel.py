@@ -81,11 +81,11 @@ def _describe(track: Track) -> list[str]:
                 f"  90 %: {100 * low:.2g} to {100 * high:.2g} %",
             ]
     pulse = track.pulse
-    if pulse["rate_bpm"] is None:
-        lines.append("pulse: too short")
+    if pulse["rate_bpm"] is not None:
+        lines.append(f"pulse {pulse['rate_bpm']:.0f} per minute")
     else:
-        clear = "" if pulse["is_readable"] else " (not clear)"
-        lines.append(f"pulse {pulse['rate_bpm']:.0f} per minute{clear}")
+        lines.append("pulse: not readable" if pulse["estimates"] else "pulse: too short")
+    if pulse["quality"] is not None:
         lines.append(f"  quality {pulse['quality']:.2f}")
     faces = [event for event in track.events if event.region == "face"]
     lines.append(f"{len(faces)} events of the face" if len(faces) != 1 else "1 event of the face")

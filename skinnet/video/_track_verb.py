@@ -241,11 +241,9 @@ class _Run:
             return
         pulse, melanin = summary["pulse"], summary["melanin"]["face"]["mean"]
         rate = "no pulse could be read"
-        if pulse["rate_bpm"] is not None:
-            clear = "" if pulse["is_readable"] else ", which is not clear"
-            rate = (
-                f"pulse {pulse['rate_bpm']:.0f} per minute (quality {pulse['quality']:.2f}{clear})"
-            )
+        if pulse["quality"] is not None:
+            what = f"pulse {pulse['rate_bpm']:.0f} per minute" if pulse["is_readable"] else rate
+            rate = f"{what} (quality {pulse['quality']:.2f})"
         events = [each for each in summary["events"] if each["region"] == "face"]
         told = ", ".join(
             f"{each['kind']} at {each['onset']:.1f} s ({100 * (each['factor'] - 1):+.0f} %)"

@@ -28,7 +28,8 @@ class Track:
         melanin: Of the face and each region `mean`, `sd` and 90 % `interval`; it is one number for
             the whole video.
         resting_hemoglobin: The same of hemoglobin in the baseline.
-        pulse: `rate_bpm`, `quality` in [0, 1], `is_readable` and the number of `estimates`.
+        pulse: `rate_bpm` (None if it cannot be read), `quality` in [0, 1], `is_readable` and the
+            number of `estimates`.
         events: Flushes and blanchings in order of time.
         shots: Of each shot `start`, `end`, `baseline` and `looks` (frames that the network read).
         frames: How many frames were `read`, `lost` and `hidden`.
@@ -66,7 +67,7 @@ class Track:
 
     def __repr__(self) -> str:
         rate = self.pulse["rate_bpm"]
-        pulse = f"pulse {rate:.0f}" if rate and self.pulse["is_readable"] else "no clear pulse"
+        pulse = f"pulse {rate:.0f}" if rate else "no clear pulse"
         return (
             f"<Track of {self.seconds:.1f} s, {sum(self.frames.values())} frames: {pulse}, "
             f"{len(self.events)} events>"

@@ -228,7 +228,8 @@ class Tracker:
     def _take_events(self, reading: Reading) -> None:
         for index, finder in enumerate(self._finders):
             change, sd = float(reading.change[index]), float(reading.change_sd[index])
-            found = finder.add(reading.time, change, sd)
+            noise = sd if reading.noise_sd is None else float(reading.noise_sd[index])
+            found = finder.add(reading.time, change, sd, noise)
             if found is not None:
                 self._keep_event(found)
 

@@ -1,5 +1,7 @@
 """Scores of clips whose reading is made up."""
 
+from pathlib import Path
+
 import numpy as np
 import pytest
 
@@ -10,9 +12,11 @@ from benchmarks.video import (
     measure_coverage,
     measure_melanin,
     measure_onset,
+    measure_peers,
     measure_pulse,
 )
 from benchmarks.video_clips import ClipScore, find_tone
+from benchmarks.video_peers import list_peers
 from skinnet.errors import InputError
 from skinnet.video._regions import NAMES
 from train.synthetic.videos.blood_course import sample_course
@@ -71,6 +75,12 @@ def test_tones_are_those_of_the_typology() -> None:
         "medium",
         "dark",
     ]
+
+
+def test_a_folder_without_networks_has_no_peers(tmp_path: Path) -> None:
+    assert list_peers(tmp_path) == [] and measure_peers([make_score()], []) is None
+    with pytest.raises(InputError, match="no folder"):
+        list_peers(tmp_path / "absent")
 
 
 def test_bad_numbers_are_a_sentence() -> None:

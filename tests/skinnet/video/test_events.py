@@ -34,3 +34,11 @@ def test_a_blanching_that_ends_has_an_end() -> None:
 def test_a_heartbeat_or_a_doubtful_change_is_no_event() -> None:
     beat = 0.1 * np.sin(2 * np.pi * 1.2 * np.arange(300) / 20)
     assert not find(beat) and not find(ramp(0.2), sd=0.2)
+
+
+def test_doubt_of_the_size_does_not_hide_an_event() -> None:
+    finder = EventFinder("face")
+    for number, change in enumerate(ramp(0.4)):
+        finder.add(number / 20, float(change), 0.6 * abs(change) + 0.02, 0.02)
+    event = finder.restart(2)
+    assert event is not None and event.sd > 0.2

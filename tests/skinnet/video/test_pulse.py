@@ -37,7 +37,8 @@ def test_noise_has_no_readable_pulse() -> None:
         found = meter.add(number / 30, rng.normal(0, 1e-3, (1, 3)), BLOOD[None])
         if found is not None:
             summary.add(found)
-    assert not summary.describe()["is_readable"]
+    described = summary.describe()
+    assert not described["is_readable"] and described["rate_bpm"] is None
 
 
 def test_a_summary_without_estimates_says_so() -> None:
@@ -56,3 +57,17 @@ def test_the_median_is_weighed_by_quality() -> None:
     for rate, quality in ((60.0, 0.9), (61.0, 0.9), (150.0, 0.1)):
         summary.add(PulseEstimate(0.0, rate, quality))
     assert 60 <= summary.describe()["rate_bpm"] <= 61.5
+
+
+@pytest.mark.parametrize(
+    "estimates",
+    [[(60.0, 0.3), (60.0, 0.3)], [(50.0, 0.6), (90.0, 0.6), (140.0, 0.6)]],
+    ids=["weak", "jumping"],
+)
+def test_a_pulse_that_is_weak_or_jumps_is_not_told(estimates: list) -> None:
+    summary = PulseSummary()
+    for rate, quality in estimates:
+        summary.add(PulseEstimate(0.0, rate, quality))
+    described = summary.describe()
+    assert described["rate_bpm"] is None and described["quality"] > 0
+    assert np.isfinite(summary.find_median())

@@ -33,6 +33,18 @@ def test_exposure_cancels_and_blood_does_not(decomposer: Decomposer) -> None:
     assert readings[11].gain[0] < 0.8
 
 
+def test_exposure_that_drifts_is_no_blood_and_widens_the_interval(decomposer: Decomposer) -> None:
+    still = make_frames(14, 0)
+    drift = [np.rint(each * (1 - 0.02 * max(0, number - 6))).astype(np.uint8)
+             for number, each in enumerate(still)]  # fmt: skip
+    tracker = Tracker(decomposer, baseline=(0, 0.2), looks=2, maps=False)
+    readings = follow(tracker, drift)
+    change = np.array([[each.change[0], each.change_sd[0]] for each in readings])
+    assert (np.abs(change[7:, 0]) < 1.645 * change[7:, 1]).all()
+    assert change[-1, 1] > 1.5 * change[5, 1] and readings[-1].gain[0] < 0.85
+    assert not tracker.finish().events
+
+
 def test_melanin_is_one_number(decomposer: Decomposer) -> None:
     tracker = Tracker(decomposer, baseline=(0, 0.2), looks=2, maps=False)
     follow(tracker, make_frames(8))

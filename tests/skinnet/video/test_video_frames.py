@@ -1,7 +1,9 @@
 """Frames of files: time stamps, rotation, and folders."""
 
+import struct
 from fractions import Fraction
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
@@ -38,6 +40,18 @@ def test_uneven_time_stamps_are_kept(tmp_path: Path) -> None:
     assert (frames[3].pixels == make_pictures(5)[3]).all()
 
 
+def test_the_rotation_of_a_phone_is_applied(tmp_path: Path) -> None:
+    video = write_video(tmp_path / "phone.mp4", make_pictures(5))
+    content = bytearray(video.read_bytes())
+    start = content.index(b"tkhd") + 44  # the display matrix of a version 0 header
+    clockwise = (0, 1 << 16, 0, -(1 << 16), 0, 0, 64 << 16, 0, 1 << 30)
+    content[start : start + 36] = struct.pack(">9i", *clockwise)
+    video.write_bytes(content)
+    last = list(VideoFrames(video, "phone.mp4"))[-1].pixels
+    assert last.shape == (96, 64, 3)
+    assert last[10, 50].min() > 150 > 50 > last[10, 10].max()
+
+
 def test_a_file_that_is_cut_off_gives_what_it_has(tmp_path: Path) -> None:
     noise = np.random.default_rng(0).integers(0, 255, (40, 64, 64, 3)).astype(np.uint8)
     whole = write_video(tmp_path / "whole.mkv", list(noise))
@@ -47,13 +61,23 @@ def test_a_file_that_is_cut_off_gives_what_it_has(tmp_path: Path) -> None:
     assert 5 < len(frames) < 40
 
 
-def test_a_video_without_time_stamps_asks_for_the_rate(tmp_path: Path) -> None:
-    raw = write_video(tmp_path / "raw.h264", make_pictures(4))
-    try:
-        frames = list(VideoFrames(raw, "raw.h264", 10.0))
-    except InputError as error:
-        pytest.fail(str(error))
-    assert len(frames) == 4
+def test_a_video_without_time_stamps_asks_for_the_rate(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    video = write_video(tmp_path / "plain.mp4", make_pictures(4))
+
+    class Timeless:
+        time = None
+
+        def __init__(self, frame: Any) -> None:
+            self.to_ndarray = frame.to_ndarray
+
+    decode = VideoFrames._decode
+    monkeypatch.setattr(VideoFrames, "_decode", lambda self: map(Timeless, decode(self)))
+    with pytest.raises(InputError, match=r"no time stamps.*--fps"):
+        list(VideoFrames(video, "plain.mp4"))
+    times = [frame.time for frame in VideoFrames(video, "plain.mp4", 10.0)]
+    assert np.allclose(times, [0, 0.1, 0.2, 0.3])
 
 
 def test_a_folder_has_its_times_in_a_table(tmp_path: Path) -> None:

@@ -16,6 +16,9 @@ from train.synthetic.videos.head_motion import KINDS, HeadMotion, sample_motion
 QUALITY = (8, 17)
 """Range of constant rate factors of H.264: .1 to 1 bit a pixel, as telephones write."""
 
+_SCENES = 8
+"""Scenes for each clip: seeds from 0 to 7 take different ones."""
+
 
 class ClipPlan(NamedTuple):
     """What is sampled of a clip.
@@ -62,7 +65,7 @@ class Clips:
         data = SyntheticFaces(
             self.size,
             test_heads=self.heads,
-            test_samples=max(self.count, 1) * 8,
+            test_samples=max(self.count, 1) * _SCENES,
             ict=self.ict,
             geometry=self.geometry,
         )
@@ -88,8 +91,9 @@ class Clips:
         """
         scenes = data.test_dataloader().dataset
         assert isinstance(scenes, SyntheticScenes)
-        for again in range(8):
-            scene = _give_melanin(scenes[plan.number + again * self.count], plan.melanin)
+        for again in range(_SCENES):
+            place = (again + self.seed) % _SCENES * self.count + plan.number
+            scene = _give_melanin(scenes[place], plan.melanin)
             batch = COLLATE["mild"]([scene])
             seed = 1000 * self.seed + plan.number
             try:
