@@ -43,7 +43,7 @@ def main(folder: Path) -> int:
         words = ["shader", "-q", *maps, "--target", "blender", "--overwrite"]
         if run_skinnet([*words, "-o", str(folder / tone)]):
             return 2
-    script = Path(__file__).with_name("blushing_scene.py")
+    script = Path(__file__).parent / "in_blender" / "blushing_scene.py"
     blender = _ROOT / ".venv-blender" / "bin" / "python"
     subprocess.run([blender, script, folder, json.dumps([*_TONES])], check=True)
     return 0

@@ -29,7 +29,7 @@ _LIBRARIES = (
 )
 """Packages that check what the user has given."""
 
-_ENTRIES = ("train.cli", "train.refusals")
+_ENTRIES = ("train.cli", "train.refusals", "skinnet.pipeline._sentence_parser")
 """Modules of ours that hand the flags of the user on."""
 
 

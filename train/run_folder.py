@@ -125,9 +125,7 @@ def _check_previous(run: Path) -> bool:
     run = run.resolve()
     if not run.is_dir() or not any(run.iterdir()):
         return False
-    names = {entry.name for entry in run.iterdir() if not entry.name.startswith(".skinnet-")}
-    killed_at_once = names <= {"config.yaml"}
-    if not killed_at_once and not any(next(run.glob(name), None) for name in RUN_FILES):
+    if not _was_killed_at_once(run) and not any(next(run.glob(name), None) for name in RUN_FILES):
         raise InputError(
             f"{run} holds files that are not those of a run; give another folder with --run."
         )
@@ -137,6 +135,15 @@ def _check_previous(run: Path) -> bool:
             "start from another folder or give another one with --run."
         )
     return True
+
+
+def _was_killed_at_once(run: Path) -> bool:
+    """Whether a folder holds nothing but the settings of a run, and files that were in writing."""
+    names = {entry.name for entry in run.iterdir() if not entry.name.startswith(".skinnet-")}
+    if names != {"config.yaml"}:
+        return not names
+    with (run / "config.yaml").open(encoding="utf-8", errors="replace") as file:
+        return file.readline().startswith("# lightning.pytorch==")
 
 
 def check_writable(folder: Path, remedy: str) -> None:

@@ -34,7 +34,11 @@ class AlbedoMaps(NamedTuple):
     offset: Float32[np.ndarray, "*texels 3"]
 
     def flatten(self) -> "AlbedoMaps":
-        """The same maps with their texels in one axis."""
+        """Put all texels into one axis.
+
+        Returns:
+            The same maps.
+        """
         f_mel, f_blood, f_mel_sd, f_blood_sd, skin = (one.ravel() for one in self[:5])
         return AlbedoMaps(f_mel, f_blood, f_mel_sd, f_blood_sd, skin, self.offset.reshape(-1, 3))
 

@@ -213,7 +213,7 @@ class AutoencoderConfig:
         levels = isinstance(self.widths, tuple) and 1 <= len(self.widths) <= _MOST_LEVELS
         if not levels or not all(_is_count(width, _WIDEST) for width in self.widths):
             raise InputError(
-                f"widths are 1 to {_MOST_LEVELS} whole numbers from 1 to {_WIDEST:,}; got "
+                f"widths holds 1 to {_MOST_LEVELS} whole numbers from 1 to {_WIDEST:,}; got "
                 f"{_clip(self.widths)}."
             )
         if not _is_count(self.working_size, _LARGEST_SIZE):

@@ -131,6 +131,9 @@ class Tracker:
     def finish(self) -> Track:
         """Finish, and summarise. Frames that waited for the end of a baseline are in `waiting`.
 
+        Returns:
+            What was read of the face.
+
         Raises:
             NoFaceError: No frame shows a face.
         """

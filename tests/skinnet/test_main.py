@@ -12,6 +12,7 @@ import pytest
 def test_an_interrupt_while_the_command_is_imported_says_nothing() -> None:
     code = (
         "import os, signal, sys, threading\n"
+        "signal.signal(signal.SIGINT, signal.default_int_handler)\n"
         "class Interrupt:\n"
         "    def find_spec(self, name, *_):\n"
         "        if name == 'skinnet.cli':\n"
@@ -29,5 +30,9 @@ def test_afterwards_an_interrupt_is_as_usual(monkeypatch: pytest.MonkeyPatch) ->
     from skinnet.__main__ import run
 
     monkeypatch.setattr(sys, "argv", ["skinnet", "--version"])
-    assert run() == 0
-    assert signal.getsignal(signal.SIGINT) is signal.default_int_handler
+    usual = signal.signal(signal.SIGINT, signal.default_int_handler)  # a job may ignore it
+    try:
+        assert run() == 0
+        assert signal.getsignal(signal.SIGINT) is signal.default_int_handler
+    finally:
+        signal.signal(signal.SIGINT, usual)

@@ -27,6 +27,7 @@ def test_a_configuration_runs(
         "build-model": [str(maps), "--appearance.samples=3"],
         "sample": [str(model / "hybrid.npz"), "--count=2"],
         "edit-maps": [str(maps / "a_maps.npz"), "--relight.size=64"],
+        "export-face": [str(maps / "a_maps.npz")],
     }
     if verb == "maps":
         small[verb] += ["--colour.calibration=exposure"]

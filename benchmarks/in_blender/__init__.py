@@ -1,0 +1,1 @@
+"""Scripts that Blender runs for the benchmarks."""
