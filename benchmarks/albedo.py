@@ -6,7 +6,8 @@
 - `speedup_vs_kdtree`: time of scipy's cKDTree, two workers, over that of `AlbedoColour.invert`.
 - `edit_ciede2000`: median difference of edited colours from skins that were changed in the physics,
   beside a transfer of the mean colour in Lab. Skins are samples of `SkinPrior`.
-- `shader_error`, `glsl_fps`: see `benchmarks._shader_targets`; null where it is not at hand.
+- `shader_error`, `glsl_fps`: see `benchmarks.shaders`; null, with a reason, where Blender or
+  Chromium is missing.
 """
 
 import argparse
@@ -17,7 +18,6 @@ import sys
 import tempfile
 import time
 from collections.abc import Sequence
-from importlib import import_module
 from itertools import product
 from pathlib import Path
 from typing import Any
@@ -28,6 +28,7 @@ from numpy.typing import NDArray
 from scipy.spatial import cKDTree
 from skimage.color import deltaE_ciede2000, rgb2lab
 
+from benchmarks.shaders import measure_glsl_fps, measure_shader_error
 from skinnet.appearance.edit import PigmentEdit
 from skinnet.images.photograph import read_picture
 from skinnet.images.srgb import linear_to_srgb
@@ -177,19 +178,16 @@ def _to_lab(linear: NDArray[Any]) -> NDArray[np.float64]:
 
 
 def measure_shaders() -> dict[str, Any]:
-    """Measure the shaders, where their module and its targets are at hand."""
-    try:
-        targets: Any = import_module("benchmarks._shader_targets")
-    except ModuleNotFoundError as error:
-        reason = f"{error.name} is not installed"
-        return {"shader_error": None, "glsl_fps": None, "shader_reason": reason}
-    found: dict[str, Any] = {}
-    for key in ("shader_error", "glsl_fps"):
-        try:
-            found[key] = getattr(targets, f"measure_{key}")()
-        except (AttributeError, ImportError, OSError, RuntimeError) as error:
-            found |= {key: None, f"{key}_reason": str(error)}
-    return found
+    """Measure the shaders; null, with a reason, where a tool is missing."""
+    errors, fps = measure_shader_error(), measure_glsl_fps()
+    known = [error for error in errors.values() if error is not None]
+    found: dict[str, Any] = {"shader_error": max(known, default=None), "shader_errors": errors}
+    missing = [name for name, error in errors.items() if error is None]
+    if missing:
+        found["shader_reason"] = f"Blender or Chromium is missing for {', '.join(missing)}"
+    if fps is None:
+        found["glsl_fps_reason"] = "Chromium is missing"
+    return found | {"glsl_fps": fps}
 
 
 if __name__ == "__main__":
