@@ -223,7 +223,7 @@ def test_baked_highlights_are_said(tmp_path: Path, capsys) -> None:
         (("--mask", "SMALL"), "is 16 x 16 and the texture 32 x 32"),
         (("--mask", "none.png"), "none.png"),
         (("--melanin-paint", "SMALL"), "is 16 x 16 and the texture 32 x 32"),
-        (("--brush", "frekles"), "Did you mean 'freckles'"),
+        (("--brush", "frekles"), "Did you mean freckles?"),
         (("--brush", "moles:count=0"), "count of the brush moles is 1 to 20000; got 0"),
         (("--brush", "moles:number=3"), "The brush moles takes"),
         (("--light", "candle"), "no light 'candle'"),
@@ -233,7 +233,7 @@ def test_baked_highlights_are_said(tmp_path: Path, capsys) -> None:
 def test_bad_words_are_one_sentence_and_leave_nothing(
     texture: Path, capsys, words: tuple[str, ...], said: str
 ) -> None:
-    small = write_grey(texture.with_name("small.png"), np.zeros((16, 16), np.uint8))
+    small = write_grey(texture.with_name("small.png"), np.full((16, 16), 255, np.uint8))
     before = sorted(texture.parent.iterdir())
     given = [str(small) if word == "SMALL" else word for word in words]
     assert main(["edit-albedo", str(texture), *given]) == 2
