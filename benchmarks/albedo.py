@@ -6,7 +6,8 @@
 - `speedup_vs_kdtree`: time of scipy's cKDTree, two workers, over that of `AlbedoColour.invert`.
 - `edit_ciede2000`: median difference of edited colours from skins that were changed in the physics,
   beside a transfer of the mean colour in Lab. Skins are samples of `SkinPrior`.
-- `shader_error`, `glsl_fps`: see `benchmarks.shaders`; null where their tools are not at hand.
+- `shader_error`, `glsl_fps`: see `benchmarks.shaders`; null, with a reason, where Blender or
+  Chromium is missing.
 """
 
 import argparse
@@ -27,6 +28,7 @@ from numpy.typing import NDArray
 from scipy.spatial import cKDTree
 from skimage.color import deltaE_ciede2000, rgb2lab
 
+from benchmarks.shaders import measure_glsl_fps, measure_shader_error
 from skinnet.appearance.edit import PigmentEdit
 from skinnet.images.photograph import read_picture
 from skinnet.images.srgb import linear_to_srgb
@@ -176,16 +178,16 @@ def _to_lab(linear: NDArray[Any]) -> NDArray[np.float64]:
 
 
 def measure_shaders() -> dict[str, Any]:
-    """Measure the shaders whose tools are at hand: the largest error of all, and of each."""
-    try:
-        from benchmarks.shaders import measure_glsl_fps, measure_shader_error
-    except ModuleNotFoundError as error:
-        reason = f"{error.name} is not installed"
-        return {"shader_error": None, "glsl_fps": None, "shader_reason": reason}
-    errors = measure_shader_error()
+    """Measure the shaders; null, with a reason, where a tool is missing."""
+    errors, fps = measure_shader_error(), measure_glsl_fps()
     known = [error for error in errors.values() if error is not None]
-    found = {"shader_error": max(known, default=None), "shader_errors": errors}
-    return found | {"glsl_fps": measure_glsl_fps()}
+    found: dict[str, Any] = {"shader_error": max(known, default=None), "shader_errors": errors}
+    missing = [name for name, error in errors.items() if error is None]
+    if missing:
+        found["shader_reason"] = f"Blender or Chromium is missing for {', '.join(missing)}"
+    if fps is None:
+        found["glsl_fps_reason"] = "Chromium is missing"
+    return found | {"glsl_fps": fps}
 
 
 if __name__ == "__main__":

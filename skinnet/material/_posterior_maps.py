@@ -8,6 +8,7 @@ from torch import Tensor
 
 from skinnet.appearance.colour import SkinColour
 from skinnet.physics._colour_posterior import ColourPosteriors
+from skinnet.physics._posterior_table import PosteriorTable
 from skinnet.physics.inversion import F_BLOOD_RANGE, F_MEL_RANGE, SkinInverse
 from skinnet.physics.reflectance import SkinReflectance
 
@@ -33,13 +34,12 @@ class PosteriorMaps:
     """
 
     def __init__(self, colour: SkinColour) -> None:
-        matrix = torch.from_numpy(colour.matrix @ colour.calibration.T)
-        exact = SkinReflectance(colour.optics, dtype=torch.float64)
-        with torch.no_grad():
-            posteriors = ColourPosteriors(exact, matrix)
-            self._table = posteriors.tabulate(_NOISE, _WHITE_BALANCE, None)
-        inverse = colour.lookup.inverse(matrix, _NODES, F_MEL_RANGE, F_BLOOD_RANGE)
-        self._nearest = _tabulate_nearest(inverse)
+        key = np.ascontiguousarray(colour.matrix @ colour.calibration.T, np.float64).tobytes()
+        if (key, colour.optics) not in _TABLES:
+            if len(_TABLES) >= _MOST_TABLES:
+                _TABLES.clear()
+            _TABLES[key, colour.optics] = _tabulate(colour)
+        self._table, self._nearest = _TABLES[key, colour.optics]
 
     @torch.no_grad()
     def __call__(
@@ -68,6 +68,22 @@ class PosteriorMaps:
             self._nearest, grid[None, None, None], align_corners=True, padding_mode="border"
         )
         return values[0, :, 0, 0]
+
+
+_TABLES: dict[tuple[bytes, str], tuple[PosteriorTable, Tensor]] = {}
+"""Tables by the matrix that makes colours; a table takes seconds, and is never changed."""
+
+_MOST_TABLES = 4
+
+
+@torch.no_grad()
+def _tabulate(colour: SkinColour) -> tuple[PosteriorTable, Float[Tensor, "1 2 side side side"]]:
+    """Tabulate the posterior and the nearest skins of all colours."""
+    matrix = torch.from_numpy(colour.matrix @ colour.calibration.T)
+    exact = SkinReflectance(colour.optics, dtype=torch.float64)
+    table = ColourPosteriors(exact, matrix).tabulate(_NOISE, _WHITE_BALANCE, None)
+    inverse = colour.lookup.inverse(matrix, _NODES, F_MEL_RANGE, F_BLOOD_RANGE)
+    return table, _tabulate_nearest(inverse)
 
 
 def _find_median(mean: Tensor, sd: Tensor) -> Tensor:
