@@ -126,7 +126,8 @@ class ShaderPatches:
 
     def measure_blender(self) -> dict[str, float]:
         """Measure the errors of the node group and of the OSL shader in Cycles."""
-        script, output = Path(__file__).parent / "in_blender" / "patches.py", self.folder / "out.npz"
+        script = Path(__file__).parent / "in_blender" / "patches.py"
+        output = self.folder / "out.npz"
         cases = self.folder / "cases.json"
         whole = [case | {"inputs": _UNCHANGED | case["inputs"]} for case in CASES]
         cases.write_text(json.dumps(whole), encoding="utf-8")

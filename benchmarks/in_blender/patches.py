@@ -1,6 +1,7 @@
 """Colours of the shader's node group and of its OSL shader, rendered by Cycles without a window.
 
-It runs in a Python that has bpy: python benchmarks/in_blender/patches.py FOLDER CASES.json OUTPUT.npz
+It runs in a Python that has bpy:
+python benchmarks/in_blender/patches.py FOLDER CASES.json OUTPUT.npz
 FOLDER holds the files of `skinnet shader` with maps. CASES is a list of {"frame": N, "inputs":
 {socket: value}}. OUTPUT holds `blender` and `osl`, each [cases, rows, columns, 3] in linear sRGB.
 """

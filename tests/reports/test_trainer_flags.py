@@ -30,7 +30,8 @@ def fit(geometry: Path, monkeypatch: pytest.MonkeyPatch) -> Fit:
         raise AssertionError("A process would have been started.")
 
     # What checks shapes in tests stands between our entries and Lightning.
-    monkeypatch.setattr("train.refusals._ENTRIES", (*refusals._ENTRIES, shape_checks.__name__))
+    between = (*refusals._ENTRIES, shape_checks.__name__, "jaxtyping")
+    monkeypatch.setattr("train.refusals._ENTRIES", between)
     for kind in ("lightning.pytorch.strategies.launchers", "lightning.fabric.strategies.launchers"):
         monkeypatch.setattr(f"{kind}.subprocess_script._launch_process_observer", refuse)
         monkeypatch.setattr(f"{kind}.subprocess_script.subprocess.Popen", refuse)
