@@ -68,7 +68,7 @@ def invert(options: argparse.Namespace) -> None:
         stem = _choose_stem(folder, found, textures, digest)
         record = _describe(found, textures, colour, digest, folder)
         record |= _write(folder, stem, found, textures, colour, record, digest)
-    _print(record, folder, stem, options.json)
+    _print(found.pattern, record, folder, stem, options.json)
 
 
 def open_all(found: TextureSet, space: str | None, stack: ExitStack) -> list[TextureFile]:
@@ -251,7 +251,7 @@ class _Levels:
         return found
 
 
-def _print(record: dict[str, Any], folder: Path, stem: str, as_json: bool) -> None:
+def _print(texture: Path, record: dict[str, Any], folder: Path, stem: str, as_json: bool) -> None:
     names = [name for tile in record["tiles"] for name in tile["files"].values()]
     files = [str(folder / name) for name in [*names, stem + RECORD_END]]
     if as_json:
@@ -263,6 +263,6 @@ def _print(record: dict[str, Any], folder: Path, stem: str, as_json: bool) -> No
         if record[name]["median"] is not None
     )
     print_line(
-        f"{record['input']['path']}: median {means or 'of nothing'}; {record['skin_share']:.0%} of "
+        f"{texture}: median {means or 'of nothing'}; {record['skin_share']:.0%} of "
         f"the texels are skin; {folder / stem}{RECORD_END}"
     )

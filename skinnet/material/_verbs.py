@@ -8,6 +8,7 @@ from skinnet.inference._command.shared_arguments import add_json
 from skinnet.material._shader_flags import add_shader
 
 _MATERIAL = "skinnet.material"
+_PICTURE_ENDS = (".png", ".tif", ".tiff", ".exr", ".jpg", ".jpeg", ".json")
 _PRESET_NAMES = ("blush", "tan", "pallor", "vitiligo")
 
 
@@ -45,9 +46,22 @@ def _add_texture(verb: argparse.ArgumentParser, what: str) -> None:
 
 def _add_output(verb: argparse.ArgumentParser, usual: str) -> None:
     verb.add_argument(
-        "-o", "--output", type=Path, metavar="DIR", help=f"folder to write to; by default {usual}"
+        "-o",
+        "--output",
+        type=_name_folder,
+        metavar="DIR",
+        help=f"folder to write to; by default {usual}",
     )
     add_json(verb, "what was made")
+
+
+def _name_folder(word: str) -> Path:
+    folder = Path(word)
+    if folder.suffix.lower() in _PICTURE_ENDS and not folder.is_dir():
+        raise argparse.ArgumentTypeError(
+            f"takes a folder, in which files are named after the texture; got the file {word}"
+        )
+    return folder
 
 
 def _add_invert(verb: argparse.ArgumentParser) -> None:
@@ -98,7 +112,7 @@ def _add_edit(verb: argparse.ArgumentParser) -> None:
         "radius=0.2,seed=1; u and v from the lower left corner, sizes in widths of the texture; "
         "may be given several times",
     )
-    _add_output(verb, "the folder of the texture")
+    _add_output(verb, "the folder of the texture, or of NAME_maps.json")
 
 
 MATERIAL_VERBS: dict[str, PhotoVerb] = {

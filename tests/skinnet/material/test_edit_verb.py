@@ -255,3 +255,12 @@ def test_a_mask_of_one_tile_is_not_enough_for_a_set(tmp_path: Path, capsys) -> N
 def test_the_scale_of_painted_maps_is_documented() -> None:
     text = Path("docs/albedo.md").read_text(encoding="utf-8")
     assert WHITES["melanin"] == 0.5 and ".5 for melanin, .25 for hemoglobin" in text
+
+
+@pytest.mark.parametrize("verb", ["invert", "edit-albedo"])
+def test_the_name_of_a_file_is_no_folder(
+    texture: Path, verb: str, capsys: pytest.CaptureFixture[str]
+) -> None:
+    target = texture.with_name("edited.png")
+    assert main([verb, str(texture), "-o", str(target)]) == 2
+    assert "got the file" in capsys.readouterr().err and not target.exists()
