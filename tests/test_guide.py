@@ -11,7 +11,9 @@ from pathlib import Path
 import pytest
 from guide_pictures import write_pictures
 from pipeline_scans import FAST, write_scan
+from skimage.data import astronaut
 from small_runs import SMALL
+from small_videos import write_video
 
 import train.cli
 from skinnet.batch.__main__ import make_parser
@@ -114,6 +116,8 @@ def test_commands_run(page: Path, monkeypatch: pytest.MonkeyPatch) -> None:
         Path("scans").mkdir()
         for number in (1, 2, 3):
             write_scan(Path(f"scans/{number}.obj"), number)
+    if page.stem == "video":
+        write_video(Path("video.mp4"), [astronaut()[:256, 96:352]] * 8)
     for words in commands(page):
         RUN[words[0]](words[1:])
 
