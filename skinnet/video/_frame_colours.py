@@ -24,12 +24,11 @@ class FrameColours:
 
     def __init__(self, tone: ToneCurve | None = None) -> None:
         self.tone = tone
+        # Saturation mixes the channels, so it is undone after sampling, with the rest of the curve.
         self._tone = tone if tone is not None and tone.saturation else None
         ramp = np.repeat(_RAMP[:, None] / 255.0, 3, 1)
-        table = (USUAL if tone is None else tone).undo(ramp)[:, 0]
-        self._table = table.astype(np.float32)
-        if self._tone is not None:
-            self._table = (_RAMP / np.float32(255)).astype(np.float32)
+        undone = ramp if self._tone is not None else (tone or USUAL).undo(ramp)
+        self._table = undone[:, 0].astype(np.float32)
 
     def __call__(
         self, frame: NDArray[np.uint8], space: TextureSpace, landmarks: Points

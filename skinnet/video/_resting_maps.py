@@ -6,6 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from skinnet.errors import InputError
+from skinnet.images.box import Box
 from skinnet.images.faces.face import Face
 from skinnet.images.photograph import read_picture
 from skinnet.inference._capture_inputs import join_captures
@@ -13,6 +14,7 @@ from skinnet.inference._face_checks import check_face
 from skinnet.inference._head_crop import crop_head
 from skinnet.inference._references.profile_use import apply_profile
 from skinnet.inference._subject import Subject
+from skinnet.inference._uncertainty import PIGMENTS
 from skinnet.inference.decomposer import Decomposer
 from skinnet.inference.onnx_model import CAPTURE_NAMES
 from skinnet.video._texture_space import Points, TextureSpace, sample
@@ -95,12 +97,9 @@ def read_look(
 
 
 def _place_in_box(
-    space: TextureSpace, landmarks: Points, box: object, shape: tuple[int, ...]
+    space: TextureSpace, landmarks: Points, box: Box, shape: tuple[int, ...]
 ) -> NDArray[np.float32]:
     """Places of the texels in maps of a shape [h, w, ...] over a box of the frame."""
-    from skinnet.images.box import Box
-
-    assert isinstance(box, Box)
     scale = np.array([shape[1] / box.width, shape[0] / box.height])
     placed: NDArray[np.float32] = ((space.place(landmarks) - (box.left, box.top)) * scale).astype(
         np.float32
@@ -108,12 +107,11 @@ def _place_in_box(
     return placed
 
 
-def pool_looks(looks: list[Look], changes: NDArray[np.float64] | None = None) -> RestingMaps:
+def pool_looks(looks: list[Look]) -> RestingMaps:
     """Pool looks of one shot by their medians, so that a bad one does no harm.
 
     Args:
         looks: One or more.
-        changes: Log change of hemoglobin of each look since the baseline, [looks]; None: none.
 
     Raises:
         InputError: No look shows skin.
@@ -124,20 +122,23 @@ def pool_looks(looks: list[Look], changes: NDArray[np.float64] | None = None) ->
         raise InputError(
             "No skin was found in the face of the video; give a video that shows it uncovered."
         )
-    shift = np.zeros(len(looks)) if changes is None else changes
-    logs = np.log(np.maximum(maps["hemoglobin"], _LEAST)) - shift[:, None]
     gloss = maps["specular"] / np.maximum(maps["shading"], 0.02)
     return RestingMaps(
-        np.exp(np.median(np.log(np.maximum(maps["melanin"], _LEAST)), 0)).astype(np.float32),
-        np.exp(np.median(logs, 0)).astype(np.float32),
+        *(_pool_fractions(maps[name]) for name in PIGMENTS),
         np.median(np.clip(gloss, 0, _MOST_GLOSS), 0).astype(np.float32),
         np.maximum(np.median(maps["shading"], 0), 0.02).astype(np.float32),
         skin,
         _pool_captures([look.capture for look in looks]),
-        np.stack([np.median(maps[f"{name}_sd"], 0) for name in ("melanin", "hemoglobin")]),
+        np.stack([np.median(maps[f"{name}_sd"], 0) for name in PIGMENTS]),
         np.median([look.face_sd for look in looks], 0),
         len(looks),
     )
+
+
+def _pool_fractions(looks: NDArray[np.float32]) -> NDArray[np.float32]:
+    """Median of logarithms [looks, texels]."""
+    logs = np.log(np.maximum(looks, _LEAST))
+    return np.asarray(np.exp(np.median(logs, 0)), np.float32)
 
 
 def _pool_captures(captures: list[Captures]) -> Captures:

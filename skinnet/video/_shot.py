@@ -94,7 +94,7 @@ class Shot:
         self._doubt = ToneDoubt(colours.tone)
         self._space: TextureSpace | None = None
         self._buffer: list[_Buffered] = []
-        self._looks: list[tuple[Look, int]] = []
+        self._looks: list[Look] = []
         self.rest: RestingMaps | None = None
         self.portrait: NDArray[np.uint8] | None = None
         self.notes: tuple[str, ...] = ()
@@ -148,7 +148,7 @@ class Shot:
         face = Face(to_box(square), float(np.degrees(square.tilt)), 1.0, followed.landmarks)
         name = f"the frame at {time:.2f} s"
         look = read_look(self._decomposer, frame, face, self.space, name, self._capture)
-        self._looks.append((look, len(self._buffer)))
+        self._looks.append(look)
         if self.portrait is None:
             points = self.space.place(followed.landmarks)
             picked = sample(frame.astype(np.float32), points)
@@ -156,8 +156,8 @@ class Shot:
 
     def _begin(self, waiting: list[_Buffered]) -> None:
         """Set the baseline, and the answer of the regions to blood."""
-        self.notes = tuple(dict.fromkeys(note for look, _ in self._looks for note in look.notes))
-        self.rest = pool_looks([look for look, _ in self._looks])
+        self.notes = tuple(dict.fromkeys(note for look in self._looks for note in look.notes))
+        self.rest = pool_looks(self._looks)
         begin, end = self._baseline
         chosen = [
             one.colours

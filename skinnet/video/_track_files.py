@@ -16,7 +16,7 @@ from skinnet.images._mark import Mark
 from skinnet.images._png_file import write_png
 from skinnet.inference._uncertainty import find_factor
 from skinnet.video._map_frame import draw_map_frame
-from skinnet.video._pulse import LEAST_QUALITY
+from skinnet.video._pulse import LEAST_QUALITY, PulseEstimate
 from skinnet.video._readings import Reading
 from skinnet.video._regions import NAMES
 from skinnet.video._video_frames import _import_av
@@ -60,8 +60,8 @@ class TrackFiles:
         self._factor = float(np.log(find_factor(1.0, _LEVEL)))
         self.has_maps = False
 
-    def add(self, reading: Reading, pulse: tuple[float, float] | None) -> None:
-        """Add a reading, and the pulse so far: rate and quality."""
+    def add(self, reading: Reading, pulse: PulseEstimate | None) -> None:
+        """Add a reading, and the last estimate of the pulse."""
         self._writer.writerow(self._make_row(reading, pulse))
         if self._maps_path is not None and reading.texture is not None:
             self._add_map(reading)
@@ -108,7 +108,7 @@ class TrackFiles:
             self._file = None
         _cut_last_row(self.table)
 
-    def _make_row(self, reading: Reading, pulse: tuple[float, float] | None) -> list[str]:
+    def _make_row(self, reading: Reading, pulse: PulseEstimate | None) -> list[str]:
         cells = [
             str(reading.number),
             f"{reading.time:.6f}",
@@ -143,12 +143,12 @@ class TrackFiles:
             self._container.mux(packet)
 
 
-def _describe_pulse(pulse: tuple[float, float] | None) -> list[str]:
+def _describe_pulse(pulse: PulseEstimate | None) -> list[str]:
     """Cells of the pulse; without its rate if that cannot be read."""
     if pulse is None:
         return ["", ""]
-    rate, quality = pulse
-    return [_round(rate) if quality >= LEAST_QUALITY else "", _round(quality)]
+    rate = _round(pulse.rate) if pulse.quality >= LEAST_QUALITY else ""
+    return [rate, _round(pulse.quality)]
 
 
 def _add_stream(av: Any, container: Any, shape: tuple[int, ...]) -> Any:

@@ -11,7 +11,7 @@ from typing import Any, Protocol, runtime_checkable
 
 from skinnet.errors import InputError
 from skinnet.files import write_together
-from skinnet.files._partial import _name_beside
+from skinnet.files._partial import write_aside
 from skinnet.images._mark import read_mark
 from skinnet.images._result_names import OUTPUT, choose_stem, compute_digest, lock_folder
 from skinnet.images.faces._face_models import open_ahead
@@ -134,10 +134,9 @@ class _Run:
             try:
                 temporary = stack.enter_context(write_together())
                 table = temporary(folder / f"{stem}{TABLE}")
-                end = folder / f"{stem}{MAPS}"
-                maps = _name_beside(end, "part") if self.options.map else None
+                aside = stack.enter_context(write_aside(folder))
+                maps = aside(MAPS) if self.options.map else None
                 files = TrackFiles(table, maps)
-                stack.callback(_remove, maps)
                 stack.callback(files.discard)
                 found = self._follow(frames, files)
                 self._close(files, folder)
@@ -153,7 +152,7 @@ class _Run:
                     digest,
                 )
                 if files.has_maps and maps is not None:
-                    maps.replace(temporary(end))
+                    maps.replace(temporary(folder / f"{stem}{MAPS}"))
             except OSError as error:
                 raise _describe_fault(folder, error) from error
         return summary
@@ -173,8 +172,7 @@ class _Run:
                     is_still = is_still and _is_same(before, frame)
                     before = frame
                     for reading in tracker.add(frame.pixels, frame.time):
-                        pulse = tracker.pulse and (tracker.pulse.rate, tracker.pulse.quality)
-                        files.add(reading, pulse)
+                        files.add(reading, tracker.pulse)
                         self.has_read = True
                     progress.advance(frame.time)
         except (InputError, KeyboardInterrupt) as error:
@@ -209,9 +207,8 @@ class _Run:
             )
         found = tracker.finish()
         if files is not None:
-            pulse = tracker.pulse and (tracker.pulse.rate, tracker.pulse.quality)
             for reading in tracker.waiting:
-                files.add(reading, pulse)
+                files.add(reading, tracker.pulse)
         return found
 
     def _make_tracker(self, frame: Frame) -> Tracker:
@@ -254,11 +251,6 @@ class _Run:
             f"{told or 'no flush or blanching'}; files: {stem}.csv, .json, .png"
             + (" and .mp4" if self.options.map else "")
         )
-
-
-def _remove(path: Path | None) -> None:
-    if path is not None:
-        path.unlink(missing_ok=True)
 
 
 def _is_same(before: Frame | None, frame: Frame) -> bool:

@@ -14,7 +14,7 @@ from skinnet.video._events import Event, EventFinder
 from skinnet.video._face_follower import FaceChoice, FaceFollower, Followed
 from skinnet.video._frame_colours import FrameColours
 from skinnet.video._pulse import PulseEstimate, PulseMeter, PulseSummary
-from skinnet.video._readings import LOST, READ, Reading
+from skinnet.video._readings import LOST, READ, Reading, make_blank
 from skinnet.video._regions import FACE, NAMES
 from skinnet.video._shot import Shot
 from skinnet.video._trace import Trace
@@ -154,7 +154,8 @@ class Tracker:
     def _add(self, frame: NDArray[np.uint8], time: float, followed: Followed) -> list[Reading]:
         if self._shot is None:
             if followed.landmarks is None:
-                return [_make_lost(self._number, time, len(self._shots) + 1)]
+                shot = len(self._shots) + 1
+                return [make_blank(self._number, time, shot, LOST, len(NAMES))]
             self._shot = self._open_shot(time)
         return self._shot.add(self._number, time, frame, followed)
 
@@ -279,12 +280,6 @@ def _take_median(shots: NDArray[np.float64]) -> NDArray[np.float64]:
     median = np.full(shots.shape[1], np.nan)
     median[seen] = np.nanmedian(shots[:, seen], 0)
     return median
-
-
-def _make_lost(number: int, time: float, shot: int) -> Reading:
-    from skinnet.video._readings import make_blank
-
-    return make_blank(number, time, shot, LOST, len(NAMES))
 
 
 def _check_baseline(baseline: Sequence[int | float]) -> tuple[float, float]:
