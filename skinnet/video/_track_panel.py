@@ -164,15 +164,15 @@ def _draw_band(
     middle: NDArray[np.float64],
     half: NDArray[np.float64],
 ) -> None:
-    for first in range(len(times) - 1):
-        pair = slice(first, first + 2)
-        if not (np.isfinite(middle[pair]).all() and np.isfinite(half[pair]).all()):
-            continue
-        upper = [(scale.x(t), scale.y(v)) for t, v in zip(times[pair], (middle + half)[pair],
-                                                          strict=True)]  # fmt: skip
-        lower = [(scale.x(t), scale.y(v)) for t, v in zip(times[pair], (middle - half)[pair],
-                                                          strict=True)]  # fmt: skip
-        draw.polygon([*upper, *lower[::-1]], fill=(*_COLOURS["face"], 40))
+    # One polygon for each run of readings: where polygons meet, their tints would add up.
+    known = np.flatnonzero(np.isfinite(middle) & np.isfinite(half))
+    for run in np.split(known, np.flatnonzero(np.diff(known) > 1) + 1):
+        if len(run) > 1:
+            upper, lower = (
+                [(scale.x(t), scale.y(v)) for t, v in zip(times[run], edge[run], strict=True)]
+                for edge in (middle + half, middle - half)
+            )
+            draw.polygon([*upper, *lower[::-1]], fill=(*_COLOURS["face"], 40))
 
 
 def _draw_line(
