@@ -1,7 +1,6 @@
 """Speed and memory of the tracker."""
 
 import gc
-import os
 import resource
 import sys
 import time
@@ -16,6 +15,7 @@ from benchmarks.report import Results
 from benchmarks.test_sets import log
 from skinnet.images.resizing import resize
 from skinnet.inference import Decomposer
+from skinnet.inference._workers.worker_count import count_cores
 from skinnet.video import Tracker
 from skinnet.video._track_files import TrackFiles
 from skinnet.video._video_frames import VideoFrames
@@ -58,7 +58,7 @@ def measure_speed(
         "frames_per_second": count / spent if count else None,
         "frames_per_second_of_processor_time": count / used if count else None,
         "baseline_s": started - opened,
-        "cores": len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else None,
+        "cores": count_cores(),
     }
 
 

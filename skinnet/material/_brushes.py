@@ -6,6 +6,7 @@ from typing import NamedTuple
 
 import numpy as np
 from jaxtyping import Float, Float32
+from scipy.special import ndtri
 
 from skinnet.errors import InputError
 from skinnet.inference._command.nearest import suggest
@@ -221,18 +222,9 @@ def _paint_patches(
     values: dict[str, float], u: np.ndarray, v: np.ndarray
 ) -> Float32[np.ndarray, "rows columns"]:
     noise = _sample_noise(values["seed"], values["size"], u, v)
-    # The share of a normal distribution above this level is about the cover.
-    level = np.sqrt(2) * _inverse_error(1 - 2 * values["cover"])
+    level = -ndtri(values["cover"])  # the share of a normal distribution above it is the cover
     wide = 10 * values["soft"]
     return _step((noise - level) / wide + 0.5) * (_fade(values, u, v) > 0)
-
-
-def _inverse_error(x: float) -> float:
-    """Inverse of the error function (Winitzki 2008), within a hundredth."""
-    x = float(np.clip(x, -0.9999, 0.9999))
-    a, log = 0.147, np.log1p(-x * x)
-    half = 2 / (np.pi * a) + log / 2
-    return float(np.copysign(np.sqrt(np.sqrt(half**2 - log / a) - half), x))
 
 
 _PAINTERS: dict[

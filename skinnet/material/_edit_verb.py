@@ -23,7 +23,7 @@ from skinnet.inference._messages import note, print_line
 from skinnet.material._brushes import Brush, parse_brush
 from skinnet.material._calibrated_colour import make_colour
 from skinnet.material._encoding import Encoding
-from skinnet.material._invert_verb import get_opaque, invert_strip, open_all
+from skinnet.material._invert_verb import get_opaque, invert_rows, open_all
 from skinnet.material._map_files import (
     RECORD_END,
     WHITES,
@@ -138,7 +138,7 @@ def _open_texture(
 def _make_reader(texture: TextureFile, encoding: Encoding) -> Callable[[AlbedoColour], _Strips]:
     def read(colour: AlbedoColour) -> _Strips:
         for stored in texture.read_strips():
-            yield stored, invert_strip(stored, texture, encoding, colour).maps
+            yield stored, invert_rows(stored, texture, encoding, colour).maps
 
     return read
 
@@ -317,11 +317,10 @@ def _find_tile(path: Path, tile: _Tile) -> Path:
     """The file of a tile, where the path is a pattern or one tile of a set."""
     if tile.tile is None:
         return path
-    found = find_set(path, partial=True) if TOKEN in path.name else TextureSet(path)
-    named = path.with_name(path.name.replace(TOKEN, str(tile.tile)))
+    named = TextureSet(path).name_tile(tile.tile)
     if TOKEN not in path.name or not named.exists():
         raise InputError(
-            f"The texture has the tile {tile.tile}, and {found.pattern} has no such tile; draw one "
+            f"The texture has the tile {tile.tile}, and {path} has no such tile; draw one "
             f"for each tile, and name them by a pattern with {TOKEN}."
         )
     return named

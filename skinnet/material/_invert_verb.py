@@ -9,6 +9,7 @@ from pathlib import Path
 from typing import Any, NamedTuple
 
 import numpy as np
+from jaxtyping import Float32
 from numpy.typing import NDArray
 
 from skinnet.files import make_folder, write_together
@@ -42,16 +43,16 @@ from skinnet.material.albedo import AlbedoColour, AlbedoMaps
 _Files = dict[str, str]
 
 
-class TileStrip(NamedTuple):
-    """Rows of a texture, and their pigments as a map of 16 bits holds them.
+class InvertedRows(NamedTuple):
+    """Pigments of rows of a texture, as a map of 16 bits holds them.
 
     Attributes:
-        stored: All channels, as the file has them.
         maps: The maps, whose fractions are those of whole pixels.
+        model: Linear RGB of the skin model at these fractions, [rows, width, 3].
     """
 
-    stored: NDArray[Any]
     maps: AlbedoMaps
+    model: Float32[np.ndarray, "rows width 3"]
 
 
 def invert(options: argparse.Namespace) -> None:
@@ -80,9 +81,9 @@ def open_all(found: TextureSet, space: str | None, stack: ExitStack) -> list[Tex
     return textures
 
 
-def invert_strip(
+def invert_rows(
     stored: NDArray[Any], texture: TextureFile, encoding: Encoding, colour: AlbedoColour
-) -> TileStrip:
+) -> InvertedRows:
     """Invert rows of a texture; transparent texels are not skin."""
     linear = encoding.decode(stored[..., list(texture.rgb)])
     maps = colour.invert(linear)
@@ -91,15 +92,14 @@ def invert_strip(
         for name, plane in (("melanin", maps.f_mel), ("hemoglobin", maps.f_blood))
     )
     # The offset is that of the pixels, so that these give the exact texture.
-    maps = maps._replace(
-        f_mel=f_mel, f_blood=f_blood, offset=linear - colour.decode(f_mel, f_blood)
-    )
+    model = colour.decode(f_mel, f_blood)
+    maps = maps._replace(f_mel=f_mel, f_blood=f_blood, offset=linear - model)
     if texture.alpha is not None:
         maps = maps._replace(
             skin=np.where(stored[..., texture.alpha] > 0, maps.skin, np.float32(0))
         )
     skin = np.rint(maps.skin * 255).astype(np.float32) / np.float32(255)
-    return TileStrip(stored, maps._replace(skin=skin))
+    return InvertedRows(maps._replace(skin=skin), model)
 
 
 def get_opaque(stored: NDArray[Any], texture: TextureFile) -> NDArray[Any]:
@@ -181,16 +181,16 @@ def _write_tile(
         pool = stack.enter_context(ThreadPoolExecutor(2))  # it ends before the files are closed
         waiting: list[Future[None]] = []
         for stored in texture.read_strips():
-            strip = invert_strip(stored, texture, encoding, colour)
+            rows = invert_rows(stored, texture, encoding, colour)
             rgb = stored[..., list(texture.rgb)]
             opaque = get_opaque(stored, texture)
-            counts.add(encoding.normalise(rgb).reshape(-1, 3), strip.maps.flatten(), opaque.ravel())
-            planes = _to_planes(strip, texture, encoding)
-            levels.add(planes, strip.maps.skin > 0)
+            counts.add(encoding.normalise(rgb).reshape(-1, 3), rows.maps.flatten(), opaque.ravel())
+            planes = _to_planes(stored, rows, texture, encoding)
+            levels.add(planes, rows.maps.skin > 0)
             for one in waiting:
                 one.result()
             waiting = [pool.submit(writers[name].write, plane) for name, plane in planes.items()]
-            advance(strip.maps.f_mel.size)
+            advance(rows.maps.f_mel.size)
         for one in waiting:
             one.result()
     return counts
@@ -211,16 +211,15 @@ def _describe_file(texture: TextureFile, name: str, digest: str) -> Any:
 
 
 def _to_planes(
-    strip: TileStrip, texture: TextureFile, encoding: Encoding
+    stored: NDArray[Any], inverted: InvertedRows, texture: TextureFile, encoding: Encoding
 ) -> dict[str, NDArray[Any]]:
     """Convert maps to rows of pixels [rows, width, channels]."""
-    maps, stored, rgb = strip.maps, strip.stored, list(texture.rgb)
+    (maps, model), rgb = inverted, list(texture.rgb)
     fractions = dict(zip(WHITES, maps[:4], strict=True))
     planes = {name: to_pixels(plane, name)[..., None] for name, plane in fractions.items()}
     planes["skin"] = np.rint(maps.skin * 255).astype(np.uint8)[..., None]
-    skin = encoding.decode(stored[..., rgb]) - maps.offset
     offset = stored.astype(np.float32 if encoding.is_float else encoding.dtype)
-    offset[..., rgb] = encoding.subtract(stored[..., rgb], skin)
+    offset[..., rgb] = encoding.subtract(stored[..., rgb], model)
     return planes | {"offset": offset}
 
 

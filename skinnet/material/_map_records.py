@@ -13,7 +13,7 @@ from skinnet.errors import InputError
 from skinnet.files._reading import MOST_TEXT, read_file
 from skinnet.material._map_files import RECORD_END, WHITES, compute_set_digest, read_record
 from skinnet.material._texture_file import open_texture
-from skinnet.material._udim import TOKEN
+from skinnet.material._udim import TOKEN, TextureSet
 
 _PIGMENTS = {"melanin": "Melanin", "hemoglobin": "Hemoglobin"}
 _WRITTEN = (*_PIGMENTS, "skin", "offset")
@@ -133,9 +133,7 @@ class MapRecord(NamedTuple):
 
 
 def _list_tiles(path: Path, tiles: tuple[int, ...]) -> list[Path]:
-    if not tiles:
-        return [path]
-    return [path.with_name(path.name.replace(TOKEN, str(tile))) for tile in tiles]
+    return [file for _, file in TextureSet(path, tiles).list_files()]
 
 
 def open_record(path: Path) -> MapRecord:

@@ -7,7 +7,7 @@ import numpy as np
 from skinnet.images._chunks import insert_chunks, make_text
 from skinnet.images._mark import Mark
 from skinnet.material._skin_table import SkinTable
-from skinnet.material._texture_file import import_openimageio
+from skinnet.material._texture_file import TextureWriter, import_openimageio
 from skinnet.physics._pigment_axis import PigmentAxis
 
 _LEVELS = 65535
@@ -29,10 +29,8 @@ def write_table_exr(path: Path, table: SkinTable) -> None:
     texts = describe_axes(table) | {"compression": "zip", "oiio:ColorSpace": "lin_rec709_scene"}
     for key, value in texts.items():
         spec.attribute(key, value)
-    file = oiio.ImageOutput.create("exr")
-    pixels = np.ascontiguousarray(table.colours[::-1])
-    if not (file.open(str(path), spec) and file.write_image(pixels) and file.close()):
-        raise OSError(file.geterror())
+    with TextureWriter(path, spec) as writer:
+        writer.write(table.colours[::-1])
 
 
 def write_table_png(path: Path, table: SkinTable) -> None:

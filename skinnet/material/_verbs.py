@@ -4,11 +4,10 @@ import argparse
 from pathlib import Path
 
 from skinnet.inference._command.photo_verbs import PhotoVerb
-from skinnet.inference._command.shared_arguments import add_json
+from skinnet.inference._command.shared_arguments import add_folder, add_json
 from skinnet.material._shader_flags import add_shader
 
 _MATERIAL = "skinnet.material"
-_PICTURE_ENDS = (".png", ".tif", ".tiff", ".exr", ".jpg", ".jpeg", ".json")
 _PRESET_NAMES = ("blush", "tan", "pallor", "vitiligo")
 
 
@@ -45,23 +44,8 @@ def _add_texture(verb: argparse.ArgumentParser, what: str) -> None:
 
 
 def _add_output(verb: argparse.ArgumentParser, usual: str) -> None:
-    verb.add_argument(
-        "-o",
-        "--output",
-        type=_name_folder,
-        metavar="DIR",
-        help=f"folder to write to; by default {usual}",
-    )
+    add_folder(verb, usual)
     add_json(verb, "what was made")
-
-
-def _name_folder(word: str) -> Path:
-    folder = Path(word)
-    if folder.suffix.lower() in _PICTURE_ENDS and not folder.is_dir():
-        raise argparse.ArgumentTypeError(
-            f"takes a folder, in which files are named after the texture; got the file {word}"
-        )
-    return folder
 
 
 def _add_invert(verb: argparse.ArgumentParser) -> None:

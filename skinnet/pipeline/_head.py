@@ -22,7 +22,12 @@ from skinnet.mesh.closest_point import TriangleTree
 from skinnet.mesh.mesh import Mesh
 from skinnet.mesh.raster import rasterise
 
-_LEVELS = 65535
+LEVELS = 65535
+"""The largest pixel of a pigment map."""
+
+ROUGHNESS, IOR = 0.45, 1.4
+"""Roughness, and refractive index, of skin's surface in renderers."""
+
 _MAX_ANGLE = 60.0
 """Angle in degrees between the normals of face and scan beyond which a scan's detail is not used"""
 
@@ -93,7 +98,7 @@ def make_head(
     fractions = {
         name: getattr(texture, part)[rows, columns].clip(0, 1) for name, part in PIGMENTS.items()
     }
-    scales = {name: float(values.max()) / _LEVELS or 1.0 for name, values in fractions.items()}
+    scales = {name: float(values.max()) / LEVELS or 1.0 for name, values in fractions.items()}
     albedo = to_uint8(linear_to_srgb(texture.albedo(colour)[rows, columns]))
     facts = {"light": colour.light, "camera": colour.camera, "optics": colour.optics}
     bare = (positions, normals, tangents, uv, triangles)

@@ -7,15 +7,10 @@ import numpy as np
 import trimesh
 from PIL import Image
 
-from skinnet.pipeline._head import Head, encode_png
+from skinnet.pipeline._head import IOR, LEVELS, ROUGHNESS, Head, encode_png
 
 KEY = "skinnet"
 """Key of our entry among the `extras` of the material."""
-
-_IOR = 1.4
-"""Refractive index of skin."""
-
-_ROUGHNESS = 0.45
 
 
 def write_glb(path: Path, head: Head) -> None:
@@ -33,7 +28,7 @@ def write_glb(path: Path, head: Head) -> None:
         baseColorTexture=Image.fromarray(head.albedo),
         normalTexture=Image.fromarray(head.normal_map),
         metallicFactor=0.0,
-        roughnessFactor=_ROUGHNESS,
+        roughnessFactor=ROUGHNESS,
     )
     mesh = trimesh.Trimesh(
         head.positions,
@@ -73,10 +68,10 @@ def _add_pigments(head: Head, buffers: dict[Any, bytes], tree: dict[str, Any]) -
         entry[name] = {
             "texture": {"index": len(tree["textures"]) - 1, "texCoord": 0},
             # glTF's readers scale 16 bits to [0, 1].
-            "scale": head.scales[name] * 65535,
+            "scale": head.scales[name] * LEVELS,
             "unit": "volume fraction",
         }
     material = tree["materials"][0]
     material["extras"] = {KEY: entry}
-    material["extensions"] = {"KHR_materials_ior": {"ior": _IOR}}
+    material["extensions"] = {"KHR_materials_ior": {"ior": IOR}}
     tree["extensionsUsed"] = ["KHR_materials_ior"]

@@ -7,9 +7,7 @@ from typing import Any
 import numpy as np
 
 from skinnet.errors import InputError, _explain_missing
-from skinnet.pipeline._head import Head, encode_png
-
-_ROUGHNESS, _IOR = 0.45, 1.4
+from skinnet.pipeline._head import IOR, LEVELS, ROUGHNESS, Head, encode_png
 
 
 def check_usd() -> None:
@@ -86,7 +84,7 @@ def _define_material(stage: Any, head: Head) -> Any:
     material.GetPrim().SetCustomDataByKey("skinnet", dict(head.facts))
     surface = UsdShade.Shader.Define(stage, "/head/skin/surface")
     surface.CreateIdAttr("UsdPreviewSurface")
-    for name, value in {"roughness": _ROUGHNESS, "metallic": 0.0, "ior": _IOR}.items():
+    for name, value in {"roughness": ROUGHNESS, "metallic": 0.0, "ior": IOR}.items():
         surface.CreateInput(name, kinds.Float).Set(value)
     albedo = _define_texture(stage, "albedo", "sRGB")
     surface.CreateInput("diffuseColor", kinds.Color3f).ConnectToSource(
@@ -100,7 +98,7 @@ def _define_material(stage: Any, head: Head) -> Any:
     )
     for name, scale in head.scales.items():
         texture = _define_texture(stage, name, "raw")
-        texture.CreateInput("scale", kinds.Float4).Set(Gf.Vec4f(scale * 65535))
+        texture.CreateInput("scale", kinds.Float4).Set(Gf.Vec4f(scale * LEVELS))
         texture.CreateOutput("r", kinds.Float)
     material.CreateSurfaceOutput().ConnectToSource(surface.CreateOutput("surface", kinds.Token))
     return material

@@ -124,7 +124,8 @@ def pool_looks(looks: list[Look]) -> RestingMaps:
         )
     gloss = maps["specular"] / np.maximum(maps["shading"], 0.02)
     return RestingMaps(
-        *(_pool_fractions(maps[name]) for name in PIGMENTS),
+        _pool_fractions(maps["melanin"]),
+        _pool_fractions(maps["hemoglobin"]),
         np.median(np.clip(gloss, 0, _MOST_GLOSS), 0).astype(np.float32),
         np.maximum(np.median(maps["shading"], 0), 0.02).astype(np.float32),
         skin,

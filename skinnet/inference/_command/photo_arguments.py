@@ -126,7 +126,7 @@ def add_compare(verb: argparse.ArgumentParser) -> None:
     """Add the flags of `skinnet compare`."""
     verb.add_argument("before", help="a photograph, or - for standard input")
     verb.add_argument("after", help="another one of the same face, from the same side")
-    add_folder(verb, "the folder of the first photograph")
+    add_folder(verb, "skinmaps in the folder of the first photograph")
     add_json(verb)
     add_model(verb)
     add_known(verb, "the session of both")
@@ -139,7 +139,7 @@ def add_track(verb: argparse.ArgumentParser) -> None:
         nargs="?",
         help="a video, or a folder of frames with their time stamps in times.csv (file,time)",
     )
-    add_folder(verb, "the video's folder")
+    add_folder(verb, "skinmaps in the video's folder")
     verb.add_argument(
         "--face",
         type=lambda word: int(word) if word.lstrip("-").isdecimal() else word,

@@ -3,6 +3,8 @@
 import argparse
 from pathlib import Path
 
+_FILE_ENDS = (".png", ".tif", ".tiff", ".exr", ".jpg", ".jpeg", ".json")
+
 
 def add_photographs(verb: argparse.ArgumentParser) -> None:
     """Add the photographs that a verb reads."""
@@ -19,7 +21,7 @@ def add_photographs(verb: argparse.ArgumentParser) -> None:
 def add_inputs(verb: argparse.ArgumentParser) -> None:
     """Add the photographs that a verb reads, and the folder of its results."""
     add_photographs(verb)
-    add_folder(verb, "the photograph's folder")
+    add_folder(verb, "skinmaps in the photograph's folder")
 
 
 def add_json(verb: argparse.ArgumentParser, what: str = "the summary") -> None:
@@ -30,23 +32,33 @@ def add_json(verb: argparse.ArgumentParser, what: str = "the summary") -> None:
 
 
 def add_folder(verb: argparse.ArgumentParser, usual: str) -> None:
-    """Add the folder to write to."""
+    """Add the folder to write to, and which one it is by default."""
     verb.add_argument(
         "-o",
         "--output",
-        type=_read_folder,
+        type=read_folder,
         metavar="DIR",
-        help=f"folder to write to; by default skinmaps in {usual}",
+        help=f"folder to write to; by default {usual}",
     )
 
 
-def _read_folder(word: str) -> Path:
+def read_folder(word: str) -> Path:
+    """Read the name of a folder of results.
+
+    Raises:
+        argparse.ArgumentTypeError: It is that of a file.
+    """
     if word == "-":
         raise argparse.ArgumentTypeError(
             "-o is a folder, since several files are written; --json prints the numbers to "
             "standard output."
         )
-    return Path(word)
+    folder = Path(word)
+    if folder.suffix.lower() in _FILE_ENDS and not folder.is_dir():
+        raise argparse.ArgumentTypeError(
+            f"it is a folder, in which files are named after what they are made from; got {word}"
+        )
+    return folder
 
 
 def add_model(verb: argparse.ArgumentParser) -> None:

@@ -263,4 +263,4 @@ def test_the_name_of_a_file_is_no_folder(
 ) -> None:
     target = texture.with_name("edited.png")
     assert main([verb, str(texture), "-o", str(target)]) == 2
-    assert "got the file" in capsys.readouterr().err and not target.exists()
+    assert f"got {target}" in capsys.readouterr().err and not target.exists()
