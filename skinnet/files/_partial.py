@@ -64,7 +64,7 @@ def write_together() -> Iterator[Callable[[Path], Path]]:
     def name_temporary(path: Path) -> Path:
         if path.is_dir():
             raise InputError(f"{path} is a folder, but a file of that name must be written.")
-        _sweep(path.absolute().parent)
+        sweep(path.parent)
         return parts.setdefault(path, _name_beside(path, "part"))
 
     renamed: list[Path] = []
@@ -105,14 +105,23 @@ def _name_target(error: OSError, parts: dict[Path, Path]) -> None:
 
 
 def sweep(folder: Path) -> None:
-    """Remove the partial files that killed processes have left in a folder.
+    """Remove the partial files that killed processes have left in a folder, once for each.
 
     Whatever is written into a folder does so by itself.
 
     Args:
         folder: The folder; it need not exist.
     """
-    _sweep(folder.absolute())
+    folder = folder.absolute()
+    with _sweeping, suppress(OSError):
+        if folder in _looked_at:
+            return
+        _looked_at.add(folder)
+        for entry in os.scandir(folder):
+            with suppress(FileNotFoundError):  # another process has removed it
+                if entry.name not in _own and _is_abandoned(entry):
+                    os.unlink(entry.path)
+                    _removed.append(Path(entry.path))
 
 
 def take_removed() -> list[Path]:
@@ -141,7 +150,7 @@ def write_aside(folder: Path) -> Iterator[Callable[[str], Path]]:
     parts: list[Path] = []
 
     def name_temporary(suffix: str) -> Path:
-        _sweep(folder.absolute())
+        sweep(folder)
         parts.append(_name_beside(folder / f"a{suffix}", "part"))
         return parts[-1]
 
@@ -156,19 +165,6 @@ def _name_beside(path: Path, kind: str) -> Path:
     name = f".skinnet-{_HOST}-{os.getpid()}-{token_hex(6)}.{kind}{path.suffix}"
     _own.add(name)
     return path.with_name(name)
-
-
-def _sweep(folder: Path) -> None:
-    """Remove the partial files of processes that were killed, once for each folder."""
-    with _sweeping, suppress(OSError):
-        if folder in _looked_at:
-            return
-        _looked_at.add(folder)
-        for entry in os.scandir(folder):
-            with suppress(FileNotFoundError):  # another process has removed it
-                if entry.name not in _own and _is_abandoned(entry):
-                    os.unlink(entry.path)
-                    _removed.append(Path(entry.path))
 
 
 def _is_abandoned(entry: "os.DirEntry[str]") -> bool:
