@@ -168,10 +168,11 @@ def _prepare(options: argparse.Namespace, found: Walk) -> tuple[int, Decomposer]
     workers = choose_count(options.workers, found.pictures, options.provider)
     if workers == 1:
         return 1, _make_decomposer(options)
-    Decomposer(options.model, providers=options.provider).load()  # what is wrong is said once
-    explain(f"{workers} processes read the photographs.")
     threads = max(1, count_cores() // workers)
-    return workers, Decomposer(options.model, threads=threads, providers=options.provider)
+    decomposer = Decomposer(options.model, threads=threads, providers=options.provider)
+    decomposer.load()  # what is wrong is said once, before a worker starts
+    explain(f"{workers} processes read the photographs.")
+    return workers, decomposer
 
 
 def _report_failure(table: FaceTable, page: FaceReport, name: str, error: Exception) -> None:
