@@ -26,7 +26,10 @@ class FolderFrames:
     Attributes:
         duration: Time from the first frame to the last one, in seconds.
         notes: Sentences that the user should read.
+        bits_per_pixel: None: pictures are compressed apart, which holds no colours over time.
     """
+
+    bits_per_pixel: float | None = None
 
     def __init__(self, folder: Path, name: str, rate: float | None = None) -> None:
         self.notes: list[str] = []

@@ -18,6 +18,7 @@ from skinnet.video._noise import RunningNoise
 from skinnet.video._readings import HIDDEN, LOST, READ, Reading, make_blank
 from skinnet.video._regions import FACE, NAMES
 from skinnet.video._resting_maps import Look, RestingMaps, pool_looks, read_look
+from skinnet.video._slow_errors import SlowErrors
 from skinnet.video._texture_space import SIZE, TextureSpace, sample
 from skinnet.video._tone_doubt import ToneDoubt
 
@@ -38,12 +39,12 @@ _GLOSS_BY_SHADING = 0.5
 _CHROMA_BY_BEND = 0.05
 """Standard deviation of log colour for each unit of bend, by which the mesh slides on the skin."""
 
-_SCALE_SD, _SCALE_BY_TONE, _MOST_SCALE_SD = 0.22, 0.10, 0.36
-"""Relative standard deviation of a change from melanin .1 on, by how much it grows with the
-negative logarithm of less melanin, and its most. Skins differ in what else they are made of (see
-`_blood_response._ANSWER`), and tone curves scale colours. It is that of the slopes of read over
-true changes in 27 synthetic clips, which are not those of the benchmark. What the uncertainty of
-the resting maps adds is computed."""
+_SCALE_SD, _SCALE_BY_TONE, _MOST_SCALE_SD = 0.22, (0.10, 0.30), 0.45
+"""Relative standard deviation of a change for a melanin of .1, by how much it grows with the
+logarithm of less and of more melanin, and its most. Skins differ in what else they are made of (see
+`_blood_response._ANSWER`), tone curves scale colours, and melanin hides blood. It is that of the
+slopes of read over true changes in 28 synthetic clips, which are not those of the benchmark. What
+the uncertainty of the resting maps adds is computed."""
 
 _MOST_FACTOR = 25.0
 """Largest factor on the noise by the spread of the baseline; more is a movement."""
@@ -52,6 +53,20 @@ _BLUR = 2.5
 """Standard deviation, in texels, over which the map of changes is smoothed."""
 
 Array = NDArray[np.float64]
+
+
+class _Compared(NamedTuple):
+    """A frame beside the baseline.
+
+    Attributes:
+        ratios: Log ratios of the regions' linear RGB, [regions, 3]; NaN if hidden.
+        texels: Log ratios of the texels, [texels, 3].
+        seen: Which texels are seen, [texels].
+    """
+
+    ratios: Array
+    texels: NDArray[np.float32]
+    seen: NDArray[np.bool_]
 
 
 class _Buffered(NamedTuple):
@@ -173,6 +188,7 @@ class Shot:
         self._resting = self.space.fill(self.rest.hemoglobin)
         self._texel_weights = self._weigh_texels(table)
         self._noise = RunningNoise(len(NAMES))
+        self._slow = SlowErrors(self._regions, self.space.inside)
         self._warm_up(waiting)
 
     def _find_scale_sd(self, table: ColourTable) -> Array:
@@ -182,8 +198,9 @@ class Shot:
         logarithm, and the change that is read is too small.
         """
         assert self.rest is not None
-        fairness = -np.log(np.maximum(self.resting_melanin()[0], 1e-3) / 0.1)
-        own = np.clip(_SCALE_SD + _SCALE_BY_TONE * fairness, _SCALE_SD, _MOST_SCALE_SD)
+        darkness = np.log(np.maximum(self.resting_melanin()[0], 1e-3) / 0.1)
+        by_tone = np.where(darkness < 0, -_SCALE_BY_TONE[0], _SCALE_BY_TONE[1]) * darkness
+        own = np.minimum(_SCALE_SD + by_tone, _MOST_SCALE_SD)
         variance = own**2
         for pigment, (_, sds) in enumerate((self.resting_melanin(), self.resting_blood())):
             slopes = []
@@ -217,16 +234,21 @@ class Shot:
         Compression holds errors over many frames, which differences do not see; the spread of the
         baseline does.
         """
-        rows = [(one.time, self._compare(one.colours)[0]) for one in waiting
-                if one.colours is not None]  # fmt: skip
-        for time, ratios in rows:
-            self._noise.add(time, ratios)
-        self._noise_factor = _compare_spreads(
-            np.stack([ratios for _, ratios in rows]), self._noise.covariance
-        )
+        rows = []
+        for one in waiting:
+            if one.colours is not None:
+                compared = self._compare(one.colours)
+                self._learn(one.time, compared)
+                rows.append(compared.ratios)
+        self._noise_factor = _compare_spreads(np.stack(rows), self._noise.covariance)
 
-    def _compare(self, colours: NDArray[np.float32]) -> tuple[Array, NDArray[np.bool_]]:
-        """Log ratios of the regions' colours to the baseline, [regions, 3]; NaN if hidden."""
+    def _learn(self, time: float, compared: _Compared) -> None:
+        """Learn noise and slow errors from a frame."""
+        self._noise.add(time, compared.ratios)
+        self._slow.add(time, compared.texels, compared.seen)
+
+    def _compare(self, colours: NDArray[np.float32]) -> _Compared:
+        """Compare a frame's colours with the baseline."""
         seen = np.isfinite(colours).all(1) & (colours.max(1) < BRIGHTEST)
         seen &= colours.min(1) > 0
         with np.errstate(divide="ignore", invalid="ignore"):
@@ -247,20 +269,21 @@ class Shot:
         with np.errstate(divide="ignore", invalid="ignore"):
             ratios = np.log(lit.astype(np.float64)) - np.log(base.astype(np.float64))
         ratios[~enough] = np.nan
-        return ratios, seen
+        return _Compared(ratios, ratio, seen)
 
     def _read(
         self, number: int, time: float, colours: NDArray[np.float32] | None, bend: float
     ) -> Reading:
         if colours is None:
             return make_blank(number, time, self.number, LOST, len(NAMES))
-        ratios, seen = self._compare(colours)
+        compared = self._compare(colours)
+        ratios = compared.ratios
         read = np.asarray(np.isfinite(ratios).all(1))
         if not read[NAMES.index(FACE)]:
             return make_blank(number, time, self.number, HIDDEN, len(NAMES))
         if time > self._noise.time:  # else it is of the baseline, which is learnt from already
-            self._noise.add(time, ratios)
-        noise = self._noise_factor * self._noise.covariance
+            self._learn(time, compared)
+        noise = self._noise_factor * self._noise.covariance + self._slow.covariance
         noise = noise + (_CHROMA_BY_BEND * bend) ** 2 * np.eye(3)
         shown = np.where(read[:, None], ratios, 0.0)
         # Red answers least to blood, so that its ratio tells how much light there is.
@@ -281,7 +304,7 @@ class Shot:
             np.hypot(base_sd, sd),
             np.where(read, np.exp(found.gain), np.nan),
             ratios,
-            self._map(colours, seen, float(found.gain[0])) if self._with_maps else None,
+            self._map(compared, float(found.gain[0])) if self._with_maps else None,
             self._direction,
             self._resting if self._with_maps else None,
             np.where(read, found.sd, np.nan),
@@ -329,13 +352,11 @@ class Shot:
         information = np.maximum((weights * slope).sum(1), 1e-9)
         return np.asarray(weights / information[:, None], np.float32)
 
-    def _map(
-        self, colours: NDArray[np.float32], seen: NDArray[np.bool_], gain: float
-    ) -> NDArray[np.float32]:
+    def _map(self, compared: _Compared, gain: float) -> NDArray[np.float32]:
         """Log change over the texture, smoothed; NaN where it is not skin."""
-        chosen = seen & self._usable
-        with np.errstate(divide="ignore", invalid="ignore"):
-            ratio = np.log(colours / self._base) - np.float32(gain)
+        chosen = compared.seen & self._usable
+        with np.errstate(invalid="ignore"):
+            ratio = compared.texels - np.float32(gain)
         values = np.where(chosen, (ratio * self._texel_weights).sum(1), 0)
         layers = self.space.fill(np.stack([values, chosen], -1).astype(np.float32), 0.0)
         smooth = ndimage.gaussian_filter(layers, (_BLUR, _BLUR, 0))

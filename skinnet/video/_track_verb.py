@@ -33,7 +33,12 @@ from skinnet.video._track_files import (
     is_full,
     write_summary,
 )
-from skinnet.video._video_frames import BrokenVideoError, Frame, VideoFrames
+from skinnet.video._video_frames import (
+    BrokenVideoError,
+    Frame,
+    VideoFrames,
+    note_compression,
+)
 from skinnet.video.track import Track
 from skinnet.video.tracker import Tracker
 
@@ -49,6 +54,7 @@ class _Frames(Protocol):
 
     duration: float | None
     notes: list[str]
+    bits_per_pixel: float | None
 
     def __iter__(self) -> Iterator[Frame]: ...
 
@@ -140,9 +146,15 @@ class _Run:
                 stack.callback(files.discard)
                 found = self._follow(frames, files)
                 self._close(files, folder)
-                notes = tuple(dict.fromkeys((*found.notes, *frames.notes, *self.notes)))
-                found = replace(found, notes=notes)
-                about = {"file": self.name, "input": {"sha256": digest}, "complete": not self.fault}
+                bits = frames.bits_per_pixel
+                doubts = note_compression(self.name, bits)
+                told = (*found.notes, *doubts, *frames.notes, *self.notes)
+                found = replace(found, notes=tuple(dict.fromkeys(told)))
+                about = {
+                    "file": self.name,
+                    "input": {"sha256": digest, "bits_per_pixel": bits and round(bits, 4)},
+                    "complete": not self.fault,
+                }
                 summary = write_summary(
                     temporary(folder / f"{stem}{SUMMARY}"),
                     temporary(folder / f"{stem}{PANEL}"),

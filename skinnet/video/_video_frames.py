@@ -11,6 +11,9 @@ from numpy.typing import NDArray
 
 from skinnet.errors import InputError, _explain_fault, _explain_missing
 
+_LEAST_BITS = 0.05
+"""Bits a pixel below which compression is strong enough to be said."""
+
 _MOST_BAD = 30
 """Damaged packets one after the other after which a stream counts as broken."""
 
@@ -42,6 +45,7 @@ class VideoFrames:
     Attributes:
         duration: Its length in seconds, as it states; None if it does not.
         notes: Sentences that the user should read.
+        bits_per_pixel: Bits that the file spends on a pixel of a frame that was read; None before.
     """
 
     def __init__(self, path: Path | int, name: str, rate: float | None = None) -> None:
@@ -54,7 +58,8 @@ class VideoFrames:
         self._stream = self._container.streams.video[0]
         self._stream.thread_type = "AUTO"
         self.duration = self._find_duration()
-        self._converted = 0
+        self.bits_per_pixel: float | None = None
+        self._bits = self._pixels = 0
 
     def __iter__(self) -> Iterator[Frame]:
         first, last, number, dropped = None, -math.inf, 0, 0
@@ -115,6 +120,7 @@ class VideoFrames:
         while True:
             try:
                 packet = next(packets)
+                self._bits += 8 * packet.size
                 yield from packet.decode()
                 bad = 0
             except StopIteration:
@@ -141,9 +147,21 @@ class VideoFrames:
 
     def _convert(self, frame: Any) -> NDArray[np.uint8]:
         pixels = frame.to_ndarray(format="rgb24")
+        self._pixels += pixels.shape[0] * pixels.shape[1]
+        self.bits_per_pixel = self._bits / self._pixels
         turns = round(getattr(frame, "rotation", 0) / 90) % 4
         upright: NDArray[np.uint8] = np.ascontiguousarray(np.rot90(pixels, turns))
         return upright
+
+
+def note_compression(name: str, bits: float | None) -> tuple[str, ...]:
+    """Say that a video of so many bits a pixel is compressed strongly, if it is."""
+    if bits is None or bits >= _LEAST_BITS:
+        return ()
+    return (
+        f"{name} has only {bits:.3f} bits a pixel: such compression leaves wrong colours for "
+        "seconds, and hides the pulse. Intervals are wider; record with less compression.",
+    )
 
 
 def _import_av() -> Any:

@@ -99,7 +99,7 @@ def test_a_video_that_breaks_off_keeps_what_was_read(
     frames = make_frames(10)
 
     class Broken:
-        duration, notes = None, ()
+        duration, notes, bits_per_pixel = None, (), None
 
         def __iter__(self):
             for number, pixels in enumerate(frames):
