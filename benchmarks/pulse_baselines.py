@@ -5,7 +5,14 @@ from collections.abc import Callable, Mapping
 import numpy as np
 from numpy.typing import NDArray
 
-from skinnet.video._pulse import WINDOW, PulseEstimate, PulseSummary, filter_band, find_peak
+from skinnet.video._pulse import (
+    WINDOW,
+    PulseEstimate,
+    PulseSummary,
+    filter_band,
+    find_peak,
+    measure_spectrum,
+)
 
 Array = NDArray[np.float64]
 
@@ -51,7 +58,7 @@ METHODS: Mapping[str, Callable[[Array], Array]] = {
 
 
 def estimate_pulse(times: Array, ratios: Array, method: Callable[[Array], Array]) -> float | None:
-    """Estimate the pulse of a clip in windows and by a spectrum as `Tracker` does.
+    """Estimate the pulse of a clip in windows and by spectra as `Tracker` does.
 
     Args:
         times: Seconds, [N].
@@ -66,9 +73,11 @@ def estimate_pulse(times: Array, ratios: Array, method: Callable[[Array], Array]
         chosen = (times <= end) & (times >= end - WINDOW)
         colours = _resample(times[chosen], np.exp(ratios[chosen]))
         signal = filter_band(method(colours)[:, None])[:, 0]
-        summary.add(PulseEstimate(end, *find_peak(signal)))
+        filled = min((times[chosen][-1] - times[chosen][0]) / WINDOW, 1.0)
+        spectra = filled * measure_spectrum(signal)[None].repeat(2, 0)
+        summary.add(PulseEstimate(end, *find_peak(signal), spectra))
         end += _EVERY
-    rate = summary.find_median()
+    rate = summary.find_rate()
     return rate if np.isfinite(rate) else None
 
 

@@ -109,7 +109,7 @@ def follow(
     for frame in frames:
         readings += tracker.add(frame.pixels, frame.time)
     track = tracker.finish()
-    return track, readings + tracker.waiting, tracker._summary.find_median()
+    return track, readings + tracker.waiting, tracker._summary.find_rate()
 
 
 def find_tone(melanin: float, hemoglobin: float) -> str:

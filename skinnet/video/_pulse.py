@@ -23,6 +23,13 @@ _LEAST_SEEN = 0.9
 _HALF_WIDTH = 0.1
 """Half of the width, in Hz, of the peak and of its first harmonic, which count as pulse."""
 
+_EMPHASIS = 0.5
+"""Power of the frequency that weighs the face's signal: movements are slower than a pulse."""
+
+_FREQUENCY = np.fft.rfftfreq(_ZEROS, 1 / _RATE)
+_IN_BAND = (_FREQUENCY >= BAND[0]) & (_FREQUENCY <= BAND[1])
+_BINS = _FREQUENCY[_IN_BAND]
+
 LEAST_QUALITY = 0.35
 """Quality below which a pulse cannot be read."""
 
@@ -41,11 +48,14 @@ class PulseEstimate(NamedTuple):
         rate: Beats per minute.
         quality: Share in [0, 1] of the power from 40 to 210 beats per minute that lies at the rate
             and at twice the rate.
+        spectra: Share of the power in the pulse's band, of all regions and of the face alone,
+            [2, bins], times the share of the window that is filled; None if they are not known.
     """
 
     time: float
     rate: float
     quality: float
+    spectra: Array | None = None
 
 
 class PulseMeter:
@@ -66,7 +76,8 @@ class PulseMeter:
 
         Args:
             time: Time stamp in seconds.
-            ratios: Log ratio of linear RGB to the baseline, [regions, 3]; NaN where not seen.
+            ratios: Log ratio of linear RGB to the baseline, [regions, 3], of the face first; NaN
+                where not seen.
             direction: Derivative of log RGB by log hemoglobin, [regions, 3].
 
         Returns:
@@ -86,11 +97,25 @@ class PulseMeter:
         seen = np.isfinite(stacked).all(2).mean(0) >= _LEAST_SEEN
         if not seen.any():
             return None
-        count = len(stacked)
-        signals = resample(np.array(self._times), stacked[:, seen].reshape(count, -1))
+        signals = resample(np.array(self._times), stacked.reshape(len(stacked), -1))
         if len(signals) < 4 * _RATE or not signals.any():
             return None
-        return PulseEstimate(time, *find_peak(project(signals, direction[seen].ravel())))
+        return self._estimate(time, signals, direction, seen)
+
+    def _estimate(
+        self, time: float, signals: Array, direction: Array, seen: NDArray[np.bool_]
+    ) -> PulseEstimate:
+        """Estimate from the signals of all regions [N, 3 regions]."""
+        parts = seen & (np.arange(len(seen)) > 0)
+        chosen = np.repeat(parts if parts.any() else seen, 3)
+        whole = project(signals[:, chosen], direction.ravel()[chosen])
+        rate, quality = find_peak(whole)
+        spectra = measure_spectrum(whole)[None].repeat(2, 0)
+        if seen[0]:
+            face = project(signals[:, :3], direction[0], _EMPHASIS)
+            spectra[1] = measure_spectrum(face, _EMPHASIS)
+        spectra *= min((self._times[-1] - self._times[0]) / WINDOW, 1.0)
+        return PulseEstimate(time, rate, quality, spectra)
 
 
 def resample(times: Array, values: Array) -> Array:
@@ -99,7 +124,11 @@ def resample(times: Array, values: Array) -> Array:
     even = times[0] + np.arange(count) / _RATE
     finite = [np.isfinite(one) for one in values.T]
     signals = np.stack(
-        [np.interp(even, times[on], one[on]) for on, one in zip(finite, values.T, strict=True)], -1
+        [
+            np.interp(even, times[on], one[on]) if on.any() else np.zeros(count)
+            for on, one in zip(finite, values.T, strict=True)
+        ],
+        -1,
     )
     return filter_band(signals)
 
@@ -116,7 +145,7 @@ def filter_band(signals: Array) -> Array:
     return np.asarray(np.fft.irfft(spectrum, len(rest), axis=0))
 
 
-def project(signals: Array, direction: Array) -> Array:
+def project(signals: Array, direction: Array, emphasis: float = 0.0) -> Array:
     """Project colours on the change that blood makes: minimum variance, distortionless response.
 
     Of all weights that leave a change of blood as it is, these have the least variance: they cancel
@@ -125,12 +154,14 @@ def project(signals: Array, direction: Array) -> Array:
     Args:
         signals: Log RGB of all regions in the pulse's band, [N, channels].
         direction: What blood does to them, [channels].
+        emphasis: Power of the frequency that weighs what the variance is measured of.
 
     Source:
         J. Capon, High-resolution frequency-wavenumber spectrum analysis, Proceedings of the IEEE
         57, 1969, with the direction of the skin model instead of a steering vector.
     """
-    covariance = signals.T @ signals / len(signals)
+    weighed = _emphasise(signals, emphasis) if emphasis else signals
+    covariance = weighed.T @ weighed / len(weighed)
     loaded = covariance + _LOADING * np.trace(covariance) / len(covariance) * np.eye(
         len(covariance)
     )
@@ -138,51 +169,80 @@ def project(signals: Array, direction: Array) -> Array:
     return np.asarray(signals @ (weights / max(float(weights @ direction), 1e-12)))
 
 
+def _emphasise(signals: Array, power: float) -> Array:
+    weights = np.fft.rfftfreq(len(signals), 1 / _RATE)[:, None] ** power
+    return np.asarray(np.fft.irfft(weights * np.fft.rfft(signals, axis=0), len(signals), axis=0))
+
+
+def measure_spectrum(signal: Array, emphasis: float = 0.0) -> Array:
+    """Measure the share of the power at each frequency of the pulse's band, [bins].
+
+    Args:
+        signal: Evenly sampled, [N].
+        emphasis: Power of the frequency that weighs amplitudes.
+    """
+    power = np.abs(np.fft.rfft(signal * np.hanning(len(signal)), _ZEROS)[_IN_BAND]) ** 2
+    power = power * _BINS ** (2 * emphasis)
+    return np.asarray(power / max(float(power.sum()), 1e-300))
+
+
 def find_peak(signal: Array) -> tuple[float, float]:
     """Find the pulse rate of an evenly sampled signal [N], and its quality."""
-    windowed = signal * np.hanning(len(signal))
-    power = np.abs(np.fft.rfft(windowed, _ZEROS)) ** 2
-    frequency = np.fft.rfftfreq(_ZEROS, 1 / _RATE)
-    band = (frequency >= BAND[0]) & (frequency <= BAND[1])
-    peak = float(frequency[np.where(band, power, 0).argmax()])
-    near = np.abs(frequency - peak) <= _HALF_WIDTH
-    near |= (np.abs(frequency - 2 * peak) <= _HALF_WIDTH) & band
-    total = float(power[band].sum())
-    return 60 * peak, float(power[near & band].sum()) / total if total > 0 else 0.0
+    share = measure_spectrum(signal)
+    peak = float(_BINS[share.argmax()])
+    near = np.abs(_BINS - peak) <= _HALF_WIDTH
+    near |= np.abs(_BINS - 2 * peak) <= _HALF_WIDTH
+    return 60 * peak, float(share[near].sum())
 
 
 class PulseSummary:
-    """The pulse of a whole video: a histogram, so that memory does not grow with length."""
+    """The pulse of a whole video: sums of spectra and a histogram, whose memory does not grow.
+
+    Noise jumps from window to window, and a pulse does not: it is the peak of the sum of all
+    spectra. Those of all regions together tell which peak it is, and that of the face alone, in
+    which less noise of small regions is, where exactly it lies.
+    """
 
     _STEP = 0.25
 
     def __init__(self) -> None:
         self._counts = np.zeros(round(60 * 2 * BAND[1] / self._STEP))
         self._estimates, self._quality = 0, 0.0
+        self._spectra: Array | None = None
 
     def add(self, estimate: PulseEstimate) -> None:
         """Add an estimate, weighed by its quality."""
         self._counts[int(estimate.rate / self._STEP)] += estimate.quality**2
         self._estimates += 1
         self._quality += estimate.quality
+        if estimate.spectra is not None:
+            self._spectra = estimate.spectra + (0 if self._spectra is None else self._spectra)
 
     def describe(self) -> dict[str, float | int | bool | None]:
-        """Median rate weighed by quality, for JSON; `rate_bpm` is None if it cannot be read."""
+        """Describe it for JSON; `rate_bpm` is None if it cannot be read."""
         if not self._estimates:
             return {"rate_bpm": None, "quality": None, "is_readable": False, "estimates": 0}
-        rate, quality = self.find_median(), self._quality / self._estimates
+        rate, quality = self.find_rate(), self._quality / self._estimates
         is_readable = quality >= LEAST_QUALITY and self._agree(rate)
         return {
-            "rate_bpm": rate if is_readable else None,
+            "rate_bpm": round(rate, 2) if is_readable else None,
             "quality": round(quality, 4),
             "is_readable": is_readable,
             "estimates": self._estimates,
         }
 
-    def find_median(self) -> float:
-        """Median of the estimates weighed by quality, readable or not; NaN without any."""
+    def find_rate(self) -> float:
+        """Find the rate, readable or not; NaN without any estimate."""
         if not self._estimates:
             return float("nan")
+        if self._spectra is None:
+            return self._find_median()
+        rough = _BINS[self._spectra[0].argmax()]
+        near = np.abs(_BINS - rough) <= _HALF_WIDTH
+        return float(60 * _BINS[np.where(near, self._spectra[1], 0).argmax()])
+
+    def _find_median(self) -> float:
+        """Median of the estimates weighed by quality."""
         share = np.cumsum(self._counts) / self._counts.sum()
         return (int(np.searchsorted(share, 0.5)) + 0.5) * self._STEP
 

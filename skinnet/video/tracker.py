@@ -15,7 +15,7 @@ from skinnet.video._face_follower import FaceChoice, FaceFollower, Followed
 from skinnet.video._frame_colours import FrameColours
 from skinnet.video._pulse import PulseEstimate, PulseMeter, PulseSummary
 from skinnet.video._readings import LOST, READ, Reading, make_blank
-from skinnet.video._regions import FACE, NAMES
+from skinnet.video._regions import NAMES
 from skinnet.video._shot import Shot
 from skinnet.video._trace import Trace
 from skinnet.video.track import Track, _summarise_regions
@@ -222,8 +222,7 @@ class Tracker:
         self._seen = reading.time
         self._take_events(reading)
         if reading.direction is not None:
-            parts = [index for index, name in enumerate(NAMES) if name != FACE]
-            found = self._meter.add(reading.time, reading.ratios[parts], reading.direction[parts])
+            found = self._meter.add(reading.time, reading.ratios, reading.direction)
             if found is not None:
                 self.pulse = found
                 self._summary.add(found)
