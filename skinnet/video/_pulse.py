@@ -33,10 +33,6 @@ _BINS = _FREQUENCY[_IN_BAND]
 LEAST_QUALITY = 0.35
 """Quality below which a pulse cannot be read."""
 
-_NEAR, _LEAST_NEAR = 6.0, 0.7
-"""Beats per minute about the median, and the share of the estimates, weighed by their quality,
-that lies within them at least: what jumps is noise that looks like a rhythm."""
-
 Array = NDArray[np.float64]
 
 
@@ -49,13 +45,13 @@ class PulseEstimate(NamedTuple):
         quality: Share in [0, 1] of the power from 40 to 210 beats per minute that lies at the rate
             and at twice the rate.
         spectra: Share of the power in the pulse's band, of all regions and of the face alone,
-            [2, bins], times the share of the window that is filled; None if they are not known.
+            [2, bins], times the share of the window that is filled.
     """
 
     time: float
     rate: float
     quality: float
-    spectra: Array | None = None
+    spectra: Array
 
 
 class PulseMeter:
@@ -190,40 +186,45 @@ def find_peak(signal: Array) -> tuple[float, float]:
     """Find the pulse rate of an evenly sampled signal [N], and its quality."""
     share = measure_spectrum(signal)
     peak = float(_BINS[share.argmax()])
+    return 60 * peak, _measure_quality(share, peak)
+
+
+def _measure_quality(share: Array, peak: float) -> float:
+    """Share of the power [bins] at a frequency in Hz and at its first harmonic."""
     near = np.abs(_BINS - peak) <= _HALF_WIDTH
     near |= np.abs(_BINS - 2 * peak) <= _HALF_WIDTH
-    return 60 * peak, float(share[near].sum())
+    return float(share[near].sum())
 
 
 class PulseSummary:
-    """The pulse of a whole video: sums of spectra and a histogram, whose memory does not grow.
+    """The pulse of a whole video: sums of spectra, whose memory does not grow.
 
     Noise jumps from window to window, and a pulse does not: it is the peak of the sum of all
     spectra. Those of all regions together tell which peak it is, and that of the face alone, in
     which less noise of small regions is, where exactly it lies.
     """
 
-    _STEP = 0.25
-
     def __init__(self) -> None:
-        self._counts = np.zeros(round(60 * 2 * BAND[1] / self._STEP))
-        self._estimates, self._quality = 0, 0.0
-        self._spectra: Array | None = None
+        self._spectra = np.zeros((2, len(_BINS)))
+        self._estimates = 0
 
     def add(self, estimate: PulseEstimate) -> None:
-        """Add an estimate, weighed by its quality."""
-        self._counts[int(estimate.rate / self._STEP)] += estimate.quality**2
+        """Add an estimate."""
+        self._spectra = self._spectra + estimate.spectra
         self._estimates += 1
-        self._quality += estimate.quality
-        if estimate.spectra is not None:
-            self._spectra = estimate.spectra + (0 if self._spectra is None else self._spectra)
 
     def describe(self) -> dict[str, float | int | bool | None]:
-        """Describe it for JSON; `rate_bpm` is None if it cannot be read."""
+        """Describe it for JSON; `rate_bpm` is None if it cannot be read.
+
+        It can if enough power lies at it, and if the face alone has its clearest rhythm there, too.
+        """
         if not self._estimates:
             return {"rate_bpm": None, "quality": None, "is_readable": False, "estimates": 0}
-        rate, quality = self.find_rate(), self._quality / self._estimates
-        is_readable = quality >= LEAST_QUALITY and self._agree(rate)
+        rate = self.find_rate()
+        whole, face = self._spectra
+        quality = _measure_quality(whole / whole.sum(), rate / 60)
+        agrees = abs(_BINS[face.argmax()] - rate / 60) <= _HALF_WIDTH
+        is_readable = bool(quality >= LEAST_QUALITY and agrees)
         return {
             "rate_bpm": round(rate, 2) if is_readable else None,
             "quality": round(quality, 4),
@@ -235,18 +236,6 @@ class PulseSummary:
         """Find the rate, readable or not; NaN without any estimate."""
         if not self._estimates:
             return float("nan")
-        if self._spectra is None:
-            return self._find_median()
         rough = _BINS[self._spectra[0].argmax()]
         near = np.abs(_BINS - rough) <= _HALF_WIDTH
         return float(60 * _BINS[np.where(near, self._spectra[1], 0).argmax()])
-
-    def _find_median(self) -> float:
-        """Median of the estimates weighed by quality."""
-        share = np.cumsum(self._counts) / self._counts.sum()
-        return (int(np.searchsorted(share, 0.5)) + 0.5) * self._STEP
-
-    def _agree(self, rate: float) -> bool:
-        rates = (np.arange(len(self._counts)) + 0.5) * self._STEP
-        near = self._counts[np.abs(rates - rate) <= _NEAR].sum()
-        return bool(near >= _LEAST_NEAR * self._counts.sum())
