@@ -1,11 +1,13 @@
 """One shot of a video, between two cuts: its baseline, its resting maps, and its readings."""
 
+from contextlib import suppress
 from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 from scipy import ndimage
 
+from skinnet.errors import InputError
 from skinnet.images.faces._face_place import place_face, to_box
 from skinnet.images.faces.face import Face
 from skinnet.inference._uncertainty import PIGMENTS
@@ -14,12 +16,13 @@ from skinnet.inference.full_resolution._colour_table import ColourTable, tabulat
 from skinnet.video._blood_response import BloodResponse
 from skinnet.video._face_follower import Followed
 from skinnet.video._frame_colours import BRIGHTEST, DARKEST, FrameColours
+from skinnet.video._look_series import LookSeries, PooledMelanin
 from skinnet.video._noise import RunningNoise
 from skinnet.video._readings import HIDDEN, LOST, READ, Reading, make_blank
 from skinnet.video._regions import FACE, NAMES
 from skinnet.video._resting_maps import Look, RestingMaps, pool_looks, read_look
 from skinnet.video._slow_errors import SlowErrors
-from skinnet.video._texture_space import SIZE, TextureSpace, sample
+from skinnet.video._texture_space import SIZE, Points, TextureSpace, sample
 from skinnet.video._tone_doubt import ToneDoubt
 
 _LEAST_TEXELS = 12
@@ -110,6 +113,8 @@ class Shot:
         self._space: TextureSpace | None = None
         self._buffer: list[_Buffered] = []
         self._looks: list[Look] = []
+        self._times: list[float] = []
+        self._series = LookSeries()
         self.rest: RestingMaps | None = None
         self.portrait: NDArray[np.uint8] | None = None
         self.notes: tuple[str, ...] = ()
@@ -122,6 +127,8 @@ class Shot:
         if self.rest is None and colours is not None:
             self._look(frame, time, followed)
         if self.rest is not None:
+            if colours is not None and self._series.is_due(time):
+                self._look_again(frame, time, followed)
             return [self._read(number, time, colours, followed.bend)]
         if len(self._buffer) < _MOST_BUFFERED:
             self._buffer.append(_Buffered(number, time, colours, followed.bend))
@@ -159,15 +166,36 @@ class Shot:
         if time - self.start < due - 1e-6 or len(self._looks) >= self._wanted:
             return
         assert followed.landmarks is not None
-        square = place_face(followed.landmarks)
-        face = Face(to_box(square), float(np.degrees(square.tilt)), 1.0, followed.landmarks)
-        name = f"the frame at {time:.2f} s"
-        look = read_look(self._decomposer, frame, face, self.space, name, self._capture)
+        look = self._read_look(frame, time, followed.landmarks)
         self._looks.append(look)
+        self._times.append(time)
         if self.portrait is None:
             points = self.space.place(followed.landmarks)
             picked = sample(frame.astype(np.float32), points)
             self.portrait = np.rint(self.space.fill(picked, 232.0)).astype(np.uint8)
+
+    def _read_look(self, frame: NDArray[np.uint8], time: float, landmarks: Points) -> Look:
+        square = place_face(landmarks)
+        face = Face(to_box(square), float(np.degrees(square.tilt)), 1.0, landmarks)
+        name = f"the frame at {time:.2f} s"
+        return read_look(self._decomposer, frame, face, self.space, name, self._capture)
+
+    def _look_again(self, frame: NDArray[np.uint8], time: float, followed: Followed) -> None:
+        """Read melanin once more; readings that were given do not depend on it."""
+        assert followed.landmarks is not None
+        self._series.postpone(time)
+        with suppress(InputError):  # such as a face that has become too small
+            self._add_melanin(time, self._read_look(frame, time, followed.landmarks))
+
+    def _add_melanin(self, time: float, look: Look) -> None:
+        face = self._regions[NAMES.index(FACE)]
+        share = float(look.maps["mask"][face].mean()) if face.any() else 0.0
+        self._series.add(time, look.maps["melanin"], share)
+
+    def pool_melanin(self) -> PooledMelanin:
+        """Pool the melanin of all looks of the shot."""
+        face = self._regions[NAMES.index(FACE)]
+        return self._series.pool(face if face.any() else self.space.inside[self.space.inside])
 
     def _begin(self, waiting: list[_Buffered]) -> None:
         """Set the baseline, and the answer of the regions to blood."""
@@ -180,6 +208,9 @@ class Shot:
             if one.colours is not None and begin <= one.time - self.start <= end
         ] or [one.colours for one in waiting if one.colours is not None]
         self._set_base(chosen)
+        for time, look in zip(self._times, self._looks, strict=True):
+            self._add_melanin(time, look)
+        self._series.start(self._times[-1])
         tops = tuple(self._decomposer.encoder.output_info[name].range[1] for name in PIGMENTS)
         table = tabulate_colours(self._decomposer.decoder, self.rest.capture, (tops[0], tops[1]))
         self._response = BloodResponse(table, self.rest, self._regions)
@@ -315,12 +346,18 @@ class Shot:
         return self._average(1)
 
     def resting_melanin(self) -> tuple[Array, Array]:
-        """The same of melanin."""
+        """The same of melanin, as the baseline's looks read it."""
         return self._average(0)
 
-    def _average(self, pigment: int) -> tuple[Array, Array]:
+    def average_melanin(self, pooled: PooledMelanin) -> tuple[Array, Array]:
+        """The same of melanin that is pooled over the whole shot."""
+        return self._average(0, pooled.texels)
+
+    def _average(
+        self, pigment: int, texels: NDArray[np.float32] | None = None
+    ) -> tuple[Array, Array]:
         assert self.rest is not None
-        values = (self.rest.melanin, self.rest.hemoglobin)[pigment]
+        values = (self.rest.melanin, self.rest.hemoglobin)[pigment] if texels is None else texels
         share = self._decomposer.encoder.region_share[pigment]
         face, means, sds = self.rest.face_sd[pigment], [], []
         for mask in self._regions:

@@ -26,7 +26,7 @@ class Track:
 
     Attributes:
         melanin: Of the face and each region `mean`, `sd` and 90 % `interval`; it is one number for
-            the whole video.
+            the whole video, pooled from looks all through it.
         resting_hemoglobin: The same of hemoglobin in the baseline.
         pulse: `rate_bpm` (None if it cannot be read), `quality` in [0, 1], `is_readable` and the
             number of `estimates`.
@@ -36,6 +36,9 @@ class Track:
         seconds: Time from the first frame to the last one.
         notes: Sentences that the user should read.
         model: Version of the encoder, and the preset of the skin's constants.
+        constancy: How constant melanin is through the video: the face's `mean` in all `looks`,
+            the `spread` of their logarithms, the `standard_error` of the pooled one, and the
+            `drift` between both halves.
 
     Example:
         >>> from skimage.data import astronaut
@@ -60,6 +63,7 @@ class Track:
     seconds: float
     notes: tuple[str, ...]
     model: dict[str, str]
+    constancy: dict[str, Any] = field(default_factory=dict)
     _trace: Array = field(default_factory=lambda: np.zeros((0, 0)))
     _portrait: NDArray[np.uint8] | None = None
     _peak: tuple[float, NDArray[np.float32]] | None = None
@@ -91,6 +95,7 @@ class Track:
             "frames": self.frames,
             "shots": list(self.shots),
             "melanin": self.melanin,
+            "melanin_constancy": self.constancy,
             "resting_hemoglobin": self.resting_hemoglobin,
             "pulse": self.pulse,
             "events": [_describe_event(event) for event in self.events],

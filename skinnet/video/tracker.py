@@ -13,6 +13,7 @@ from skinnet.inference.decomposer import Decomposer
 from skinnet.video._events import Event, EventFinder
 from skinnet.video._face_follower import FaceChoice, FaceFollower, Followed
 from skinnet.video._frame_colours import FrameColours
+from skinnet.video._look_series import PooledMelanin, describe_constancy
 from skinnet.video._pulse import PulseEstimate, PulseMeter, PulseSummary
 from skinnet.video._readings import LOST, READ, Reading, make_blank
 from skinnet.video._regions import NAMES
@@ -35,7 +36,8 @@ class Tracker:
 
     Light, camera and white balance hold through a shot, and melanin does not change within minutes.
     So the resting maps are read once, from some frames of the baseline, and each frame is compared
-    with the baseline: gains and white balance cancel in log ratios of colours. The skin model says
+    with the baseline: gains and white balance cancel in log ratios of colours. Melanin is one
+    number, pooled from more looks through the whole video. The skin model says
     how colours answer to blood at the resting maps; what all channels share is light, exposure and
     shading, and what is white is gloss.
 
@@ -88,6 +90,7 @@ class Tracker:
         self._events: list[Event] = []
         self._shots: list[dict[str, Any]] = []
         self._rest: list[tuple[NDArray[np.float64], ...]] = []
+        self._melanin: list[tuple[int, PooledMelanin]] = []
         self._trace = Trace(1 + 2 * len(NAMES))
         self._frames = dict.fromkeys((READ, LOST, "hidden"), 0)
         self._notes: dict[str, None] = {}
@@ -207,7 +210,9 @@ class Tracker:
                     "looks": shot.rest.looks,
                 }
             )
-            self._rest.append((*shot.resting_melanin(), *shot.resting_blood()))
+            pooled = shot.pool_melanin()
+            self._melanin.append((shot.number, pooled._replace(texels=pooled.texels[:0])))
+            self._rest.append((*shot.average_melanin(pooled), *shot.resting_blood()))
             self._portraits = (shot.portrait, shot.space.fill(shot.rest.hemoglobin))
 
     def _take(self, reading: Reading) -> None:
@@ -266,6 +271,7 @@ class Tracker:
             float(self._last - self._first),
             tuple(self._notes),
             self._decomposer.encoder.describe(),
+            describe_constancy(self._melanin),
             self._trace.rows(),
             self._portraits[0],
             self._peak,
