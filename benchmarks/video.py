@@ -1,19 +1,24 @@
 """How well blood over time is read, on synthetic clips of all tones and movements.
 
-    python -m benchmarks.video [--clips N] [--frames N] [--minutes N] [--peers DIR] [--json]
+    python -m benchmarks.video [--clips N] [--frames N] [--minutes N] [--seed N] [--peers DIR]
+        [--keep DIR] [--json]
 
 Each clip is rendered, compressed as H.264, and tracked. `change` holds correlation `r` and `rmse`
 of log ratios of hemoglobin over the frames of all clips of a tone that have an event, by region,
 and `coverage` of the 90 % intervals over all clips; `r_clip` is the median over clips of their own
 correlations. `onset` is the error of the begin of flushes, in seconds. `pulse` is the mean absolute
 error in beats per minute of the tracker beside POS, CHROM and green on the same colours, with the
-same windows and spectrum; `readable` is over the clips whose pulse the tracker calls clear.
-`melanin` is one number for a clip, so that it does not change through one; `read_again` is how far
-the second half of a clip, read as a video of its own, is from the whole one. `speed` is frames a
-second of a video of 1280 x 720 on two threads, all results written; `memory` is by how much a run
-over so many minutes grows after its first tenth.
+same windows and spectra; `readable` is over the clips whose pulse the tracker calls clear.
+`strong` is the coverage of every fourth clip when it is compressed to .01 to .03 bits a pixel.
+`melanin` is one number for a clip: `spread` is the standard deviation of the logarithms of single
+looks, `standard_error` that of the pooled one, `drift` the difference between its halves, and
+`read_again` is how far the second half, read as a video of its own, is from the whole clip.
+`speed` is frames a second of a video of 1280 x 720 on two threads, all results written; `memory` is
+by how much a run over so many minutes grows after its first tenth. With --keep, the score of each
+clip is written to a folder as soon as it is known, and a run that was cut goes on where it ended.
 """
 
+import pickle
 from collections.abc import Callable, Iterable, Sequence
 from pathlib import Path
 from typing import Any
@@ -22,12 +27,14 @@ import numpy as np
 
 from benchmarks.report import Results, main
 from benchmarks.test_sets import SHARED, find_ict, log
-from benchmarks.video_clips import ClipScore, score_clip
-from benchmarks.video_peers import list_peers
+from benchmarks.video_clips import ClipScore, StrongScore, score_clip
+from benchmarks.video_peers import PulsePeer, list_peers
 from benchmarks.video_resources import measure_memory, measure_speed
 from skinnet.errors import InputError
+from skinnet.files._partial import write_together
 from skinnet.inference import Decomposer
 from skinnet.video._regions import NAMES
+from train.synthetic.faces import SyntheticFaces
 from train.synthetic.videos.clips import Clips
 
 METHODS = ("skinnet", "pos", "chrom", "green")
@@ -38,7 +45,12 @@ _ICT = str(SHARED / "models" / "ict_facekit.npz")
 
 
 def measure(
-    clips: int = 60, frames: int = 90, minutes: int = 10, seed: int = 0, peers: Path | None = None
+    clips: int = 60,
+    frames: int = 90,
+    minutes: int = 10,
+    seed: int = 0,
+    peers: Path | None = None,
+    keep: Path | None = None,
 ) -> Results:
     """Measure every figure.
 
@@ -48,6 +60,7 @@ def measure(
         minutes: Minutes of video over which memory is measured; 0: it is not.
         seed: Seed of the clips.
         peers: Folder of public networks.
+        keep: Folder of the scores of clips; None to keep none.
     """
     if clips < 1 or frames < 0 or minutes < 0:
         raise InputError(
@@ -58,7 +71,7 @@ def measure(
     data = settings.make_faces()
     scores: list[ClipScore] = []
     for number in range(clips):
-        found = score_clip(settings, data, number, decomposer, networks)
+        found = _score(settings, data, number, decomposer, networks, keep)
         scores += [] if found is None else [found]
         log(f"\rClips: {number + 1} of {clips}.")
     log("\n")
@@ -68,6 +81,7 @@ def measure(
         "bits_per_pixel": _average(one.bits for one in scores),
         "change": {tone: measure_change(_choose(scores, tone)) for tone in _list_tones(scores)},
         "coverage": measure_coverage(scores),
+        "strong": measure_strong(scores),
         "onset": measure_onset(scores),
         "pulse": {
             **{tone: measure_pulse(_choose(scores, tone)) for tone in _list_tones(scores)},
@@ -80,6 +94,28 @@ def measure(
         "speed": measure_speed(settings, data, decomposer, frames) if frames else None,
         "memory": measure_memory(settings, data, decomposer, minutes) if minutes else None,
     }  # fmt: skip
+
+
+def _score(
+    clips: Clips,
+    data: SyntheticFaces,
+    number: int,
+    decomposer: Decomposer,
+    networks: Sequence[PulsePeer],
+    keep: Path | None,
+) -> ClipScore | None:
+    """Score a clip, or take its score from the folder."""
+    if keep is None:
+        return score_clip(clips, data, number, decomposer, networks)
+    keep.mkdir(parents=True, exist_ok=True)
+    path = keep / f"clip_{clips.seed}_{clips.count}_{number}.pickle"
+    if path.is_file():
+        kept: ClipScore | None = pickle.loads(path.read_bytes())
+        return kept
+    found = score_clip(clips, data, number, decomposer, networks)
+    with write_together() as temporary:
+        temporary(path).write_bytes(pickle.dumps(found))
+    return found
 
 
 def measure_change(scores: Sequence[ClipScore]) -> Results:
@@ -111,7 +147,22 @@ def measure_coverage(scores: Sequence[ClipScore]) -> Results:
     return found | {"regions": {name: _cover(scores, [index]) for index, name in enumerate(NAMES)}}
 
 
-def _cover(scores: Iterable[ClipScore], regions: Iterable[int]) -> float | None:
+def measure_strong(scores: Sequence[ClipScore]) -> Results | None:
+    """Coverage of clips that are compressed strongly, by movement; None without any."""
+    found = [(one.plan.motion.kind, one.strong) for one in scores if one.strong is not None]
+    if not found:
+        return None
+    groups: dict[str, list[StrongScore]] = {"all": [one for _, one in found]}
+    for kind, one in found:
+        groups.setdefault(kind, []).append(one)
+    return {
+        "clips": len(found),
+        "bits_per_pixel": _average(one.bits for _, one in found),
+        **{name: _cover(some, range(len(NAMES))) for name, some in groups.items()},
+    }
+
+
+def _cover(scores: Iterable[ClipScore | StrongScore], regions: Iterable[int]) -> float | None:
     inside = [
         np.abs(one.change - one.truth)[:, index][seen] <= _FACTOR * one.sd[:, index][seen]
         for one in scores
@@ -159,8 +210,13 @@ def measure_melanin(scores: Sequence[ClipScore]) -> Results:
     again = [abs(second / first - 1) for one in scores
              if (first := one.melanin[0]) and (second := one.melanin[1])]  # fmt: skip
     truth = [abs(np.log(one.melanin[0] / one.plan.melanin)) for one in scores]
+    told = [one.constancy for one in scores]
+    drifts = [abs(drift) for one in told if (drift := one.get("drift")) is not None]
     return {
-        "through_clip": 0.0,
+        "spread": _take_median(one.get("spread") for one in told),
+        "standard_error": _take_median(one.get("standard_error") for one in told),
+        "drift_median": _take_median(drifts),
+        "drift_p90": float(np.percentile(drifts, 90)) if drifts else None,
         "read_again_median": _take_median(again),
         "read_again_p90": float(np.percentile(again, 90)) if again else None,
         "log_error_median": _take_median(truth),
@@ -204,7 +260,10 @@ if __name__ == "__main__":
     main(
         measure,
         (__doc__ or "").splitlines()[0],
-        paths={"peers": "folder of public pulse networks as .onnx; none by default"},
+        paths={
+            "peers": "folder of public pulse networks as .onnx; none by default",
+            "keep": "folder of the scores of clips, with which a run that was cut goes on",
+        },
         counts={
             "clips": "number of clips; 60 by default",
             "frames": "frames with which speed is measured; 90 by default, 0 for none",

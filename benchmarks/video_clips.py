@@ -1,9 +1,9 @@
 """One synthetic clip, rendered, compressed, tracked and compared with its truth."""
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 from tempfile import TemporaryDirectory
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -18,16 +18,20 @@ from skinnet.video._readings import Reading
 from skinnet.video._regions import FACE, NAMES
 from skinnet.video._video_frames import Frame, VideoFrames
 from train.synthetic.faces import SyntheticFaces
-from train.synthetic.videos.clip_files import write_clip
+from train.synthetic.videos.clip_files import ClipWriter, write_clip
 from train.synthetic.videos.clips import ClipPlan, Clips
 
 Array = NDArray[np.float64]
 
+_BASELINE = 0.0, 3.0
+"""First and last second of the baseline."""
+
 LIGHT, DARK = 41.0, 10.0
 """Typology angles, in degrees, above which a tone is light, and below which it is dark."""
 
-_AGAIN = 1.0
-"""Seconds of the baseline with which the second half of a clip is read again."""
+_STRONG, _EVERY = 21, 4
+"""Rate factor of a second, strong compression, .01 to .03 bits a pixel, and of how many clips one
+is read so, too."""
 
 
 class ClipScore(NamedTuple):
@@ -45,6 +49,8 @@ class ClipScore(NamedTuple):
         false_events: Events of the face of another kind than the true one.
         melanin: Mean melanin that is read of the clip, and of its second half alone.
         bits: Bits a pixel of the video file.
+        constancy: How constant melanin is, as the tracker describes it.
+        strong: The same clip compressed strongly; None for most.
     """
 
     plan: ClipPlan
@@ -58,6 +64,24 @@ class ClipScore(NamedTuple):
     false_events: int
     melanin: tuple[float, float | None]
     bits: float
+    constancy: Mapping[str, Any] = {}
+    strong: "StrongScore | None" = None
+
+
+class StrongScore(NamedTuple):
+    """What was read of a clip that is compressed strongly.
+
+    Attributes:
+        bits: Bits a pixel of the video file.
+        truth: True log ratios to the baseline, [frames, regions].
+        change: Those that were read.
+        sd: Their standard deviations.
+    """
+
+    bits: float
+    truth: Array
+    change: Array
+    sd: Array
 
 
 def score_clip(
@@ -73,17 +97,17 @@ def score_clip(
     with TemporaryDirectory() as folder:
         path = Path(folder) / "clip.mp4"
         write_clip(path, renderer, plan.quality)
-        pixels = len(renderer.times) * clips.settings.size**2
-        bits = 8 * path.stat().st_size / pixels
-        truth = np.stack([renderer.true_change(time) for time in renderer.times.tolist()])
-        frames = list(VideoFrames(path, f"clip {number}"))
+        frames, bits = _read(path)
+        whole = np.stack([renderer.true_change(time) for time in renderer.times.tolist()])
+        strong = None
+        if number % _EVERY == 0:
+            _compress(path, frames)
+            strong = _score_strong(decomposer, *_read(path), whole)
     try:
         track, readings, rate = follow(decomposer, frames)
     except InputError:
         return None
-    times = np.array([one.time for one in readings])
-    end = track.shots[0]["baseline"][1]
-    truth = truth[: len(readings)] - truth[: len(readings)][times <= end].mean(0)
+    truth = _subtract_baseline(whole, readings)
     events = [one for one in track.events if one.region == FACE]
     right = [one.onset for one in events if one.kind == plan.course.kind]
     return ClipScore(
@@ -98,11 +122,46 @@ def score_clip(
         len(events) - len(right),
         (float(track.melanin[FACE]["mean"]), _read_again(decomposer, frames)),
         bits,
+        track.constancy,
+        strong,
     )
 
 
+def _read(path: Path) -> tuple[list[Frame], float]:
+    """Frames of a video file, and its bits a pixel."""
+    video = VideoFrames(path, path.name)
+    frames = list(video)
+    return frames, float(video.bits_per_pixel or 0.0)
+
+
+def _compress(path: Path, frames: Sequence[Frame]) -> None:
+    writer = ClipWriter(path, _STRONG)
+    for frame in frames:
+        writer.add(frame.pixels, frame.time)
+    writer.close()
+
+
+def _score_strong(
+    decomposer: Decomposer, frames: list[Frame], bits: float, whole: Array
+) -> StrongScore | None:
+    try:
+        _, readings, _ = follow(decomposer, frames)
+    except InputError:
+        return None
+    change, sd = (np.stack([getattr(one, name) for one in readings])
+                  for name in ("change", "change_sd"))  # fmt: skip
+    return StrongScore(bits, _subtract_baseline(whole, readings), change, sd)
+
+
+def _subtract_baseline(whole: Array, readings: Sequence[Reading]) -> Array:
+    """True log ratios to the baseline."""
+    times = np.array([one.time for one in readings])
+    truth = whole[: len(readings)]
+    return np.asarray(truth - truth[times <= _BASELINE[1]].mean(0))
+
+
 def follow(
-    decomposer: Decomposer, frames: list[Frame], baseline: tuple[float, float] = (0.0, 3.0)
+    decomposer: Decomposer, frames: list[Frame], baseline: tuple[float, float] = _BASELINE
 ) -> tuple[Track, list[Reading], float]:
     """Track frames. Returns the summary, all readings, and the pulse, readable or not."""
     tracker, readings = Tracker(decomposer, baseline=baseline, maps=False), []
@@ -131,10 +190,8 @@ def _find_pulses(rate: float, readings: list[Reading]) -> dict[str, float | None
 
 def _read_again(decomposer: Decomposer, frames: list[Frame]) -> float | None:
     """Melanin of the second half of a clip, read as a video of its own."""
-    half = frames[len(frames) // 2 :]
-    some = [one for one in half if one.time <= half[0].time + _AGAIN + 0.1]
     try:
-        track, _, _ = follow(decomposer, some, (0.0, _AGAIN))
+        track, _, _ = follow(decomposer, frames[len(frames) // 2 :])
     except InputError:
         return None
     return float(track.melanin[FACE]["mean"])

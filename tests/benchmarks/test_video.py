@@ -5,6 +5,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from benchmarks import video
 from benchmarks.pulse_baselines import METHODS, estimate_pulse
 from benchmarks.video import (
     measure,
@@ -14,13 +15,14 @@ from benchmarks.video import (
     measure_onset,
     measure_peers,
     measure_pulse,
+    measure_strong,
 )
-from benchmarks.video_clips import ClipScore, find_tone
+from benchmarks.video_clips import ClipScore, StrongScore, find_tone
 from benchmarks.video_peers import list_peers
 from skinnet.errors import InputError
 from skinnet.video._regions import NAMES
 from train.synthetic.videos.blood_course import sample_course
-from train.synthetic.videos.clips import ClipPlan
+from train.synthetic.videos.clips import ClipPlan, Clips
 from train.synthetic.videos.head_motion import sample_motion
 
 
@@ -59,6 +61,35 @@ def test_errors_are_those_that_were_made() -> None:
     assert measure_pulse(scores)["pos"] == pytest.approx(3)
     assert measure_onset(scores)["mean_absolute_s"] == pytest.approx(0.2)
     assert measure_melanin(scores)["read_again_median"] == pytest.approx(0.02)
+
+
+def test_clips_that_are_compressed_strongly_are_scored_apart() -> None:
+    truth = np.zeros((20, len(NAMES)))
+    strong = StrongScore(0.02, truth, truth + 0.1, np.full_like(truth, 0.1))
+    scores = [make_score()._replace(strong=strong), make_score()]
+    found = measure_strong(scores)
+    assert found == {"clips": 1, "bits_per_pixel": 0.02, "all": 1.0, "still": 1.0}
+    assert measure_strong(scores[1:]) is None
+
+
+def test_drift_is_that_of_the_looks() -> None:
+    scores = [make_score()._replace(constancy={"drift": drift, "spread": 0.02})
+              for drift in (-0.01, 0.03)]  # fmt: skip
+    found = measure_melanin(scores)
+    assert found["drift_median"] == pytest.approx(0.02) and found["standard_error"] is None
+
+
+def test_a_run_that_was_cut_goes_on(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    count: list[int] = []
+
+    def score(clips, data, number, *rest):
+        count.append(number)
+        return make_score()
+
+    monkeypatch.setattr(video, "score_clip", score)
+    for _ in range(2):
+        assert video._score(Clips(4), None, 1, None, [], tmp_path).bits == 0.3
+    assert count == [1] and [each.suffix for each in tmp_path.iterdir()] == [".pickle"]
 
 
 @pytest.mark.parametrize("name", METHODS)
