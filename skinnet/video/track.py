@@ -39,6 +39,8 @@ class Track:
         constancy: How constant melanin is through the video: the face's `mean` in all `looks`,
             the `spread` of their logarithms, the `standard_error` of the pooled one, and the
             `drift` between both halves.
+        least_change: Of the face and each region the smallest relative change of hemoglobin that a
+            single frame tells from none, with 90 % confidence; None where the region is hidden.
 
     Example:
         >>> from skimage.data import astronaut
@@ -64,6 +66,7 @@ class Track:
     notes: tuple[str, ...]
     model: dict[str, str]
     constancy: dict[str, Any] = field(default_factory=dict)
+    least_change: dict[str, float | None] = field(default_factory=dict)
     _trace: Array = field(default_factory=lambda: np.zeros((0, 0)))
     _portrait: NDArray[np.uint8] | None = None
     _peak: tuple[float, NDArray[np.float32]] | None = None
@@ -96,6 +99,7 @@ class Track:
             "shots": list(self.shots),
             "melanin": self.melanin,
             "melanin_constancy": self.constancy,
+            "least_change": self.least_change,
             "resting_hemoglobin": self.resting_hemoglobin,
             "pulse": self.pulse,
             "events": [_describe_event(event) for event in self.events],

@@ -53,6 +53,30 @@ def test_melanin_is_one_number(decomposer: Decomposer) -> None:
     assert track.melanin[FACE]["mean"] > 0 and "melanin" not in repr(tracker.waiting)
 
 
+def test_melanin_is_pooled_from_looks_through_the_whole_video(decomposer: Decomposer) -> None:
+    frames = make_frames(6, 0)
+    tracker = Tracker(decomposer, baseline=(0, 0.2), looks=2, maps=False)
+    follow(tracker, frames)
+    follow(tracker, frames[:1], 3.0)
+    follow(tracker, frames[1:2], 6.0)
+    track = tracker.finish()
+    looks = [one["mean"] for one in track.constancy["looks"]]
+    assert [one["time"] for one in track.constancy["looks"]] == [0.0, 0.2, 3.0, 6.0]
+    assert min(looks) < track.melanin[FACE]["mean"] < max(looks)
+    assert abs(track.constancy["drift"]) < 0.05
+
+
+def test_the_least_change_is_that_of_the_noise(decomposer: Decomposer) -> None:
+    rng, least = np.random.default_rng(0), []
+    for noise in (0.0, 20.0):
+        frames = [(each + rng.normal(0, noise, each.shape)).clip(0, 255).astype(np.uint8)
+                  for each in make_frames(8, 0)]  # fmt: skip
+        tracker = Tracker(decomposer, baseline=(0, 0.3), looks=1, maps=False)
+        follow(tracker, frames)
+        least.append(tracker.finish().least_change[FACE])
+    assert 0 < 1.2 * least[0] < least[1]
+
+
 def test_a_cut_begins_a_shot_and_a_lost_face_is_said(decomposer: Decomposer) -> None:
     photo = astronaut()
     wall = np.random.default_rng(0).integers(90, 110, (256, 256, 3)).astype(np.uint8)
