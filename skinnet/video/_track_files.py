@@ -164,7 +164,7 @@ def _add_stream(av: Any, container: Any, shape: tuple[int, ...]) -> Any:
 
 
 def write_summary(
-    path: Path, panel: Path, table: Path, track: Track, about: dict[str, Any], digest: str
+    path: Path, panel: Path, table: Path, track: Track, about: dict[str, Any]
 ) -> dict[str, Any]:
     """Write the panel, and the summary with all rows of the table. Returns the summary."""
     summary = about | track.to_dict()
@@ -174,7 +174,7 @@ def write_summary(
         for number, row in enumerate(_read_rows(table)):
             file.write((",\n    " if number else "\n    ") + json.dumps(row))
         file.write("\n  ]\n}\n")
-    write_png(panel, track.draw(), Mark("track", "panel", digest).to_text())
+    write_png(panel, track.draw(), Mark("track", "panel", about["input"]["sha256"]).to_text())
     return summary
 
 

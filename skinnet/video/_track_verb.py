@@ -22,6 +22,7 @@ from skinnet.inference.decomposer import Decomposer
 from skinnet.inference.results import _describe_fault, _make_folder
 from skinnet.video._folder_frames import FolderFrames
 from skinnet.video._frame_progress import FrameProgress
+from skinnet.video._still_image import StillImage
 from skinnet.video._track_files import (
     ENDS,
     MAPS,
@@ -146,34 +147,52 @@ class _Run:
                 stack.callback(files.discard)
                 found = self._follow(frames, files)
                 self._close(files, folder)
-                bits = frames.bits_per_pixel
-                doubts = note_compression(self.name, bits)
+                doubts = note_compression(self.name, frames.bits_per_pixel)
                 told = (*found.notes, *doubts, *frames.notes, *self.notes)
                 found = replace(found, notes=tuple(dict.fromkeys(told)))
-                about = {
-                    "file": self.name,
-                    "input": {"sha256": digest, "bits_per_pixel": bits and round(bits, 4)},
-                    "complete": not self.fault,
-                }
-                summary = write_summary(
-                    temporary(folder / f"{stem}{SUMMARY}"),
-                    temporary(folder / f"{stem}{PANEL}"),
-                    table,
-                    found,
-                    about,
-                    digest,
-                )
-                if files.has_maps and maps is not None:
-                    maps.replace(temporary(folder / f"{stem}{MAPS}"))
+                bits = frames.bits_per_pixel and round(frames.bits_per_pixel, 4)
+                about = {"file": self.name, "input": {"sha256": digest, "bits_per_pixel": bits}}
+                summary = self._save(folder / stem, table, maps, found, about)
             except OSError as error:
                 raise _describe_fault(folder, error) from error
+        return summary
+
+    def _save(
+        self, stem: Path, table: Path, maps: Path | None, found: Track, about: dict[str, Any]
+    ) -> dict[str, Any]:
+        """Write what is beside the table; on a disk that is full, at least a short summary."""
+        names = [stem.with_name(stem.name + end) for end in (SUMMARY, PANEL, MAPS)]
+        try:
+            with write_together() as temporary:
+                summary = write_summary(
+                    temporary(names[0]),
+                    temporary(names[1]),
+                    table,
+                    found,
+                    about | {"complete": not self.fault},
+                )
+                if maps is not None and maps.is_file():
+                    maps.replace(temporary(names[2]))
+            return summary
+        except OSError as error:
+            if not is_full(error):
+                raise
+            self.fault = describe_full(stem.parent, error)
+        if maps is not None:
+            maps.unlink(missing_ok=True)
+        summary = about | {"complete": False} | found.to_dict()
+        try:
+            with write_together() as temporary:
+                temporary(names[0]).write_text(json.dumps(summary, indent=2), "utf-8")
+        except OSError as error:
+            if not is_full(error):
+                raise
         return summary
 
     def _follow(self, frames: _Frames, files: TrackFiles) -> Track:
         """Feed a tracker with the frames, until they end or something else ends it."""
         tracker: Tracker | None = None
-        before: Frame | None = None
-        is_still = True
+        still = StillImage()
         progress = FrameProgress(self.options.seconds or frames.duration, self.options.json)
         try:
             with progress:
@@ -181,8 +200,7 @@ class _Run:
                     if self.options.seconds is not None and frame.time > self.options.seconds:
                         break
                     tracker = tracker or self._make_tracker(frame)
-                    is_still = is_still and _is_same(before, frame)
-                    before = frame
+                    still.add(frame)
                     for reading in tracker.add(frame.pixels, frame.time):
                         files.add(reading, tracker.pulse)
                         self.has_read = True
@@ -196,26 +214,22 @@ class _Run:
                 raise
             self.fault = describe_full(files.table.parent, error)
             files.rescue()
-            return self._finish(tracker, None, before, is_still)
-        return self._finish(tracker, files, before, is_still)
+            return self._finish(tracker, None, still)
+        return self._finish(tracker, files, still)
 
     def _can_end(self, error: InputError) -> bool:
         """Whether there is something to keep although the video could not be read to its end."""
         return self.has_read or isinstance(error, BrokenVideoError)
 
     def _finish(
-        self,
-        tracker: Tracker | None,
-        files: TrackFiles | None,
-        last: Frame | None,
-        is_still: bool,
+        self, tracker: Tracker | None, files: TrackFiles | None, still: StillImage
     ) -> Track:
-        if tracker is None or last is None:
+        if tracker is None:
             raise self.fault or InputError(f"{self.name} has no frames that can be read.")
-        if is_still:
+        if still.is_still and self.fault is None:
             raise InputError(
-                f"All frames of {self.name} are the same: it is a still image, in which nothing "
-                "changes over time; skinnet predict reads a photograph."
+                f"All frames of {self.name} are the same but for compression: it is a still image, "
+                "in which nothing changes over time; skinnet predict reads a photograph."
             )
         found = tracker.finish()
         if files is not None:
@@ -258,15 +272,12 @@ class _Run:
             f"{each['kind']} at {each['onset']:.1f} s ({100 * (each['factor'] - 1):+.0f} %)"
             for each in events
         )
+        ends = [end for end in ENDS if stem.with_name(stem.name + end).is_file()]
+        files = f"{stem}{', '.join(ends[:-1])}{' and ' if ends[1:] else ''}{ends[-1]}"
         print_line(
             f"{self.name}: {summary['seconds']:.1f} s, melanin {100 * melanin:.2g} %, {rate}, "
-            f"{told or 'no flush or blanching'}; files: {stem}.csv, .json, .png"
-            + (" and .mp4" if self.options.map else "")
+            f"{told or 'no flush or blanching'}; files: {files}"
         )
-
-
-def _is_same(before: Frame | None, frame: Frame) -> bool:
-    return before is None or bool((before.pixels == frame.pixels).all())
 
 
 def _compute_digest(path: Path | None) -> str:

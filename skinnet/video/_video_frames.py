@@ -11,6 +11,9 @@ from numpy.typing import NDArray
 
 from skinnet.errors import InputError, _explain_fault, _explain_missing
 
+_SEQUENTIAL, _MOST_REST = ("mpegts",), 0.9
+"""Formats without an index, and the part of such a file that is read at least if it is whole."""
+
 _LEAST_BITS = 0.05
 """Bits a pixel below which compression is strong enough to be said."""
 
@@ -59,9 +62,15 @@ class VideoFrames:
         self._stream.thread_type = "AUTO"
         self.duration = self._find_duration()
         self.bits_per_pixel: float | None = None
-        self._bits = self._pixels = 0
+        self._bits = self._pixels = self._damaged = 0
+        self._left: str | None = None
 
     def __iter__(self) -> Iterator[Frame]:
+        """Frames in order of time.
+
+        Raises:
+            BrokenVideoError: At the end, if it is damaged or breaks off.
+        """
         first, last, number, dropped = None, -math.inf, 0, 0
         with self._container:
             for frame in self._decode():
@@ -77,6 +86,30 @@ class VideoFrames:
             self.notes.append(
                 f"{dropped} frames of {self.name} whose time stamps go back were left out."
             )
+        self._check_end(last)
+
+    def _check_end(self, last: float) -> None:
+        """Check that nothing was left out by damage, and that the stream goes to its end."""
+        if self._left is not None:
+            raise BrokenVideoError(
+                f"{self.name} breaks off at {max(last, 0):.2f} s{self._left}; record or copy it "
+                "again. What came before is read."
+            )
+        if self._damaged:
+            raise BrokenVideoError(
+                f"{self.name} is damaged: {self._damaged} of its frames cannot be decoded rightly "
+                "and were left out. The others are read."
+            )
+
+    def _find_left(self, end: float, position: int) -> str | None:
+        """Say what is missing after the last packet, at a time and a place in the file."""
+        stated, slack = self.duration, 0.05 if self._stream.duration is not None else 0.1
+        if stated is not None and stated - end > max(0.5 + slack, slack * stated):
+            return f" of {stated:.2f} s"
+        size = self._container.size
+        if self._container.format.name in _SEQUENTIAL and position < _MOST_REST * size:
+            return f", and {100 * (1 - position / size):.0f} % of the file cannot be read"
+        return None
 
     def _open(self, path: Path | int) -> Any:
         if isinstance(path, int):
@@ -114,26 +147,41 @@ class VideoFrames:
         return None if container.duration is None else container.duration / 1e6
 
     def _decode(self) -> Iterator[Any]:
-        """Decode all frames; a few damaged packets are passed over, and said."""
-        bad = 0
+        """Decode all frames but those that are damaged, or made from such.
+
+        A frame is made from those before it, back to the last key frame.
+        """
+        bad, is_clean, seen = 0, True, False
+        end, position, start = 0.0, 0, None
         packets = self._container.demux(self._stream)
         while True:
             try:
                 packet = next(packets)
                 self._bits += 8 * packet.size
-                yield from packet.decode()
-                bad = 0
+                if packet.pts is not None and packet.size:
+                    start = packet.pts if start is None else min(start, packet.pts)
+                    length = packet.pts - start + (packet.duration or 0)
+                    end = max(end, float(length * packet.time_base))
+                    position = max(position, (packet.pos or 0) + packet.size)
+                for frame in packet.decode():
+                    bad, seen = 0, True
+                    is_clean = (is_clean or frame.key_frame) and not frame.is_corrupt
+                    self._damaged += not is_clean
+                    if is_clean:
+                        yield frame
             except StopIteration:
                 break
             except (OSError, ValueError) as error:
                 bad += 1
-                if bad == 1:
-                    self.notes.append(f"{self.name} is damaged in places ({_shorten(error)}).")
+                self._damaged += seen  # a stream may begin between two key frames
+                is_clean = not seen
                 if bad >= _MOST_BAD:
                     raise BrokenVideoError(
                         f"{self.name} is broken: {bad} parts one after the other cannot be decoded "
                         f"({_shorten(error)}). What came before is read."
                     ) from error
+        if seen:
+            self._left = self._find_left(end, position)
 
     def _find_time(self, frame: Any, number: int) -> float:
         if frame.time is not None:

@@ -2,6 +2,7 @@
 
 import csv
 import errno
+import json
 from pathlib import Path
 
 import numpy as np
@@ -131,6 +132,28 @@ def test_a_full_disk_keeps_the_table(
     assert "No space left" in said and "read so far" in said
     assert len((tmp_path / "clip_track.csv").read_text().splitlines()) == 9
     assert not list(tmp_path.glob("*.mp4")) and not list(tmp_path.glob(".skinnet*"))
+
+
+def test_a_disk_that_fills_at_the_end_keeps_the_table_and_a_short_summary(
+    tracked: Tracked, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys
+) -> None:
+    def fill(*arguments):
+        raise OSError(errno.ENOSPC, "No space left on device")
+
+    monkeypatch.setattr(_track_verb, "write_summary", fill)
+    arguments = [str(tracked.video), "-o", str(tmp_path), "--baseline", "0,0.2", "--seconds", "0.6"]
+    assert "No space left" in refuse(capsys, *arguments)
+    assert len((tmp_path / "clip_track.csv").read_text().splitlines()) == 14
+    assert json.loads((tmp_path / "clip_track.json").read_text())["complete"] is False
+    assert sorted(each.suffix for each in tmp_path.iterdir()) == [".csv", ".json"]
+
+
+def test_a_still_image_that_is_compressed_is_a_sentence(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    video = write_video(tmp_path / "still.mp4", make_frames(1) * 24)
+    assert "still image" in refuse(capsys, str(video), "--baseline", "0,0.3")
+    assert not list((tmp_path / "skinmaps").iterdir())
 
 
 @pytest.mark.parametrize("word", ["--help", "-h"])
