@@ -93,6 +93,10 @@ class Shot:
         colours: Samples frames.
         capture: What is known of light and camera.
         with_maps: Whether readings have a map of the face.
+
+    Attributes:
+        refusal: Why a frame of the baseline could not be read; None if all could.
+        is_refused: Whether none could, so that no frame of the shot is read.
     """
 
     def __init__(
@@ -118,11 +122,15 @@ class Shot:
         self.rest: RestingMaps | None = None
         self.portrait: NDArray[np.uint8] | None = None
         self.notes: tuple[str, ...] = ()
+        self.refusal: InputError | None = None
+        self.is_refused = False
 
     def add(
         self, number: int, time: float, frame: NDArray[np.uint8], followed: Followed
     ) -> list[Reading]:
         """Add a frame. Returns the readings that are ready: all of the baseline at its end."""
+        if self.is_refused:
+            return [make_blank(number, time, self.number, HIDDEN, len(NAMES))]
         colours = self._sample(frame, followed)
         if self.rest is None and colours is not None:
             self._look(frame, time, followed)
@@ -132,7 +140,7 @@ class Shot:
             return [self._read(number, time, colours, followed.bend)]
         if len(self._buffer) < _MOST_BUFFERED:
             self._buffer.append(_Buffered(number, time, colours, followed.bend))
-        if time - self.start >= self._baseline[1] and self._looks:
+        if time - self.start >= self._baseline[1] and (self._looks or self.refusal):
             return self.finish()
         return []
 
@@ -142,7 +150,9 @@ class Shot:
         if self.rest is None and self._looks:
             self._begin(waiting)
         if self.rest is None:
-            return [make_blank(one.number, one.time, self.number, LOST, len(NAMES))
+            self.is_refused = self.refusal is not None
+            state = HIDDEN if self.is_refused else LOST
+            return [make_blank(one.number, one.time, self.number, state, len(NAMES))
                     for one in waiting]  # fmt: skip
         return [self._read(*one) for one in waiting]
 
@@ -166,7 +176,11 @@ class Shot:
         if time - self.start < due - 1e-6 or len(self._looks) >= self._wanted:
             return
         assert followed.landmarks is not None
-        look = self._read_look(frame, time, followed.landmarks)
+        try:
+            look = self._read_look(frame, time, followed.landmarks)
+        except InputError as error:  # a later frame may be better
+            self.refusal = error
+            return
         self._looks.append(look)
         self._times.append(time)
         if self.portrait is None:

@@ -93,6 +93,7 @@ class Tracker:
         self._finders = [EventFinder(name) for name in NAMES]
         self._events: list[Event] = []
         self._shots: list[dict[str, Any]] = []
+        self._refusal: InputError | None = None
         self._rest: list[tuple[NDArray[np.float64], ...]] = []
         self._melanin: list[tuple[int, PooledMelanin]] = []
         self._trace = Trace(1 + 2 * len(NAMES))
@@ -148,6 +149,8 @@ class Tracker:
         self.waiting = self._close_shot()
         for reading in self.waiting:
             self._take(reading)
+        if not self._rest and self._refusal is not None:
+            raise self._refusal
         if not self._rest:
             raise NoFaceError(
                 f"No face was found in the {self._number} frames of the video."
@@ -165,7 +168,10 @@ class Tracker:
                 shot = len(self._shots) + 1
                 return [make_blank(self._number, time, shot, LOST, len(NAMES))]
             self._shot = self._open_shot(time)
-        return self._shot.add(self._number, time, frame, followed)
+        readings = self._shot.add(self._number, time, frame, followed)
+        if self._shot.is_refused and self._shot.refusal is not None and not self._rest:
+            raise self._shot.refusal
+        return readings
 
     def _open_shot(self, time: float) -> Shot:
         number = len(self._shots) + 1
@@ -202,6 +208,9 @@ class Tracker:
 
     def _keep_shot(self, shot: Shot) -> None:
         if shot.rest is None:
+            self._refusal = self._refusal or shot.refusal
+            if shot.refusal is not None:
+                self._note(f"The shot from {shot.start:.2f} s is not read: {shot.refusal}")
             return
         for sentence in shot.notes:
             self._note(sentence)

@@ -89,6 +89,33 @@ def test_a_cut_begins_a_shot_and_a_lost_face_is_said(decomposer: Decomposer) -> 
     assert {each.state for each in readings} == {"read", "lost"}
 
 
+def make_grey(frame: np.ndarray) -> np.ndarray:
+    return np.repeat(frame.mean(2, keepdims=True), 3, 2).astype(np.uint8)
+
+
+def test_a_frame_without_colour_is_passed_over(decomposer: Decomposer) -> None:
+    frames = make_frames(8, 0)
+    tracker = Tracker(decomposer, baseline=(0, 0.2), looks=2, maps=False)
+    follow(tracker, [make_grey(frames[0]), *frames[1:]])
+    assert tracker.finish().frames["read"] == 8
+
+
+def test_a_shot_that_cannot_be_read_is_said(decomposer: Decomposer) -> None:
+    other = make_grey(astronaut()[:256, 100:356][:, ::-1].copy())
+    tracker = Tracker(decomposer, baseline=(0, 0.2), looks=2, maps=False)
+    follow(tracker, [*make_frames(6, 0), *[other] * 8])
+    track = tracker.finish()
+    assert track.frames == {"read": 6, "lost": 0, "hidden": 8} and len(track.shots) == 1
+    assert any("is not read: There is no colour" in each for each in track.notes)
+    alone = Tracker(decomposer, baseline=(0, 0.2), maps=False)
+    with pytest.raises(InputError, match="no colour"):
+        follow(alone, [other] * 8)
+    short = Tracker(decomposer, maps=False)
+    follow(short, [other] * 4)
+    with pytest.raises(InputError, match="no colour"):
+        short.finish()
+
+
 def test_times_must_increase(decomposer: Decomposer) -> None:
     tracker = Tracker(decomposer)
     tracker.add(astronaut(), 1.0)
