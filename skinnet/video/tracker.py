@@ -27,7 +27,7 @@ _BASELINE, _LOOKS = (0.0, 3.0), 5
 _MOST_LOST = 2.0
 """Seconds without a face after which the pulse begins anew."""
 
-_FACTOR, _MUCH = 1.645, 0.15
+_FACTOR, _MUCH = 1.645, 0.12
 """Half of a 90 % interval in standard deviations, and the smallest change that can be told from
 none from which on it is said."""
 
