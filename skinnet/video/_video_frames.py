@@ -82,6 +82,11 @@ class VideoFrames:
                     continue
                 last = time - first
                 yield Frame(last, self._convert(frame))
+        if 2 * dropped >= number > 1:
+            raise BrokenVideoError(
+                f"{dropped} of the {number} frames of {self.name} have time stamps that do not "
+                "increase; make it anew with a program that writes time stamps."
+            )
         if dropped:
             self.notes.append(
                 f"{dropped} frames of {self.name} whose time stamps go back were left out."

@@ -144,3 +144,12 @@ def test_bits_are_counted_and_strong_compression_is_said(tmp_path: Path) -> None
     assert len(list(video)) == 40 and 0.8 * size < video.bits_per_pixel * 40 * 96 * 64 < size
     assert not note_compression("noise", video.bits_per_pixel) and not note_compression("a", None)
     assert "0.020 bits" in note_compression("clip.mp4", 0.02)[0]
+
+
+def test_time_stamps_that_do_not_increase_are_said(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    video = write_video(tmp_path / "plain.mp4", make_pictures(4))
+    monkeypatch.setattr(VideoFrames, "_find_time", lambda *_: 1.0)
+    frames, sentence = read_broken(video)
+    assert len(frames) == 1 and "3 of the 4 frames" in sentence and "do not increase" in sentence
