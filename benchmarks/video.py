@@ -33,14 +33,15 @@ from benchmarks.video_resources import measure_memory, measure_speed
 from skinnet.errors import InputError
 from skinnet.files._partial import write_together
 from skinnet.inference import Decomposer
-from skinnet.video._regions import NAMES
+from skinnet.video._regions import FACE, NAMES
+from skinnet.video.tracker import UNREADABLE
 from train.synthetic.faces import SyntheticFaces
 from train.synthetic.videos.clips import Clips
 
 METHODS = ("skinnet", "pos", "chrom", "green")
 TONES = ("light", "medium", "dark")
 _FACTOR = 1.645
-_LEAST = 10
+_LEAST, _EARLY = 10, 60
 _ICT = str(SHARED / "models" / "ict_facekit.npz")
 
 
@@ -119,22 +120,36 @@ def _score(
 
 
 def measure_change(scores: Sequence[ClipScore]) -> Results:
-    """Measure r and RMSE of the log ratio by region, over the clips with an event."""
+    """Measure r and RMSE of the log ratio by region, over the clips with an event.
+
+    `readable` is the face of the clips of which the tracker does not say that it cannot be read.
+    """
     some = [one for one in scores if one.plan.course.kind != "none"]
-    results: Results = {"clips": len(some)}
-    for index, name in enumerate(NAMES):
-        pairs = [_pair(one, index) for one in some]
-        truth, change = (np.concatenate([pair[side] for pair in pairs] or [np.empty(0)])
-                         for side in (0, 1))  # fmt: skip
-        own = [_correlate(*pair) for pair in pairs]
-        results[name] = {
-            "r": _correlate(truth, change),
-            "r_clip": _take_median(own),
-            "rmse": float(np.sqrt(np.mean((change - truth) ** 2))) if len(truth) else None,
-            "mean_sd": _average(np.nanmean(one.sd[:, index]) for one in some
-                                if np.isfinite(one.sd[:, index]).any()),
-        }  # fmt: skip
-    return results
+    readable = [one for one in some if _find_least(one) <= UNREADABLE]
+    return {
+        "clips": len(some),
+        **{name: _measure_region(some, index) for index, name in enumerate(NAMES)},
+        "readable": {"clips": len(readable)} | _measure_region(readable, NAMES.index(FACE)),
+    }
+
+
+def _find_least(score: ClipScore) -> float:
+    """Smallest relative change of the face that is told from none, from its first frames."""
+    return float(np.exp(_FACTOR * np.nanmedian(score.sd[:_EARLY, NAMES.index(FACE)])) - 1)
+
+
+def _measure_region(scores: Sequence[ClipScore], index: int) -> Results:
+    pairs = [_pair(one, index) for one in scores]
+    truth, change = (np.concatenate([pair[side] for pair in pairs] or [np.empty(0)])
+                     for side in (0, 1))  # fmt: skip
+    own = [_correlate(*pair) for pair in pairs]
+    return {
+        "r": _correlate(truth, change),
+        "r_clip": _take_median(own),
+        "rmse": float(np.sqrt(np.mean((change - truth) ** 2))) if len(truth) else None,
+        "mean_sd": _average(np.nanmean(one.sd[:, index]) for one in scores
+                            if np.isfinite(one.sd[:, index]).any()),
+    }  # fmt: skip
 
 
 def measure_coverage(scores: Sequence[ClipScore]) -> Results:

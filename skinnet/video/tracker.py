@@ -27,9 +27,9 @@ _BASELINE, _LOOKS = (0.0, 3.0), 5
 _MOST_LOST = 2.0
 """Seconds without a face after which the pulse begins anew."""
 
-_FACTOR, _MUCH = 1.645, 0.12
-"""Half of a 90 % interval in standard deviations, and the smallest change that can be told from
-none from which on it is said."""
+_FACTOR, _MUCH, UNREADABLE = 1.645, 0.12, 0.5
+"""Half of a 90 % interval in standard deviations, and the smallest relative changes that can be
+told from none from which on that is said, and from which on the face counts as unreadable."""
 
 _MOST_LISTED = 1000
 """Events and shots that are listed at most."""
@@ -258,17 +258,24 @@ class Tracker:
         """Smallest relative change of each region that a frame tells from none (90 %)."""
         spread = np.sqrt(self._noise / np.maximum(self._noisy, 1))
         least = np.exp(_FACTOR * spread) - 1
-        face = float(least[NAMES.index(FACE)])
-        if face > _MUCH:
-            self._note(
-                f"In single frames, changes of blood below about {100 * face:.0f} % cannot be told "
-                "from none in this face: its skin is dark, its light changes, or the video is "
-                "compressed strongly."
-            )
+        self._note_least(100 * float(least[NAMES.index(FACE)]))
         return {
             name: round(float(one), 4) if seen else None
             for name, one, seen in zip(NAMES, least, self._noisy, strict=True)
         }
+
+    def _note_least(self, percent: float) -> None:
+        why = "its skin is dark, its light changes, or the video is compressed strongly."
+        if percent > 100 * UNREADABLE:
+            self._note(
+                "Changes of blood cannot be read in this face: in single frames, only those above "
+                f"about {percent:.0f} % can be told from none. {why[0].upper()}{why[1:]}"
+            )
+        elif percent > 100 * _MUCH:
+            self._note(
+                f"In single frames, changes of blood below about {percent:.0f} % cannot be told "
+                f"from none in this face: {why}"
+            )
 
     def _take_events(self, reading: Reading) -> None:
         for index, finder in enumerate(self._finders):

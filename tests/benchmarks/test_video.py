@@ -52,6 +52,8 @@ def make_score(error: float = 0.0, sd: float = 0.05, rate_error: float = 1.0) ->
 def test_a_perfect_reading_is_perfect() -> None:
     found = measure_change([make_score()])
     assert found["face"]["r"] == pytest.approx(1) and found["face"]["rmse"] == 0
+    assert found["readable"]["clips"] == 1
+    assert measure_change([make_score(sd=0.4)])["readable"]["clips"] == 0
     assert measure_coverage([make_score(0.05), make_score(0.2)])["all"] == 0.5
 
 
