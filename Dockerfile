@@ -2,7 +2,7 @@
 FROM node:22-slim AS node
 
 FROM python:3.11-slim AS build
-# npm fetches ONNX Runtime Web for the page, whose checksums are tested.
+# npm fetches the libraries of the page, whose checksums are tested.
 COPY --from=node /usr/local/bin/node /usr/local/bin/node
 COPY --from=node /usr/local/lib/node_modules/npm /usr/local/lib/node_modules/npm
 RUN ln -s ../lib/node_modules/npm/bin/npm-cli.js /usr/local/bin/npm

@@ -1,7 +1,7 @@
 """Writes what a plain install brings: `python -m tools.bill_of_materials FOLDER`.
 
 `cyclonedx-py` describes the environment; what the plain install does not require is left out. To it
-come the parts that the wheel has within it: the runtime of the web page. The result is
+come the parts that the wheel has within it: the libraries of the web page. The result is
 `skinnet-VERSION.cdx.json` in CycloneDX, with the version and licence of each package.
 """
 
@@ -20,11 +20,17 @@ from packaging.utils import canonicalize_name
 from skinnet._version import __version__
 from skinnet.files import make_folder, write_text
 from tools.requirement_closure import select_requirements
-from tools.web_runtime import PACKAGE
+from tools.web_runtime import MEDIABUNNY, ORT
 
 ROOT = Path(__file__).parents[1]
 
 _ROOT_REFERENCE = "root-component"
+
+_LIBRARIES = (
+    (ORT, "MIT", "Runs the networks"),
+    (MEDIABUNNY, "MPL-2.0", "Takes videos apart"),
+)
+"""What the wheel has within it: packages of npm, their licences, and what they do."""
 
 
 def main() -> int:
@@ -87,7 +93,7 @@ def select(bill: Mapping[str, Any], names: set[str], with_runtime: bool) -> dict
         if canonicalize_name(each["name"]) in names
     ]
     if with_runtime:
-        kept.append(_describe_runtime())
+        kept += [_describe_library(*each) for each in _LIBRARIES]
     references = {_ROOT_REFERENCE, *(each["bom-ref"] for each in kept)}
     graph = [
         {**each, "dependsOn": sorted(references.intersection(each.get("dependsOn", ())))}
@@ -108,14 +114,14 @@ def _name_licence(component: dict[str, Any]) -> dict[str, Any]:
     return {**component, "licenses": [{"license": name}]}
 
 
-def _describe_runtime() -> dict[str, Any]:
-    name, _, version = PACKAGE.partition("@")
+def _describe_library(package: str, licence: str, task: str) -> dict[str, Any]:
+    name, _, version = package.partition("@")
     return {
-        "bom-ref": PACKAGE,
-        "description": "Runs the networks in the web page; it lies within the wheel.",
-        "licenses": [{"license": {"acknowledgement": "declared", "id": "MIT"}}],
+        "bom-ref": package,
+        "description": f"{task} in the web page; it lies within the wheel.",
+        "licenses": [{"license": {"acknowledgement": "declared", "id": licence}}],
         "name": name,
-        "purl": f"pkg:npm/{PACKAGE}",
+        "purl": f"pkg:npm/{package}",
         "type": "library",
         "version": version,
     }

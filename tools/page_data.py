@@ -19,11 +19,33 @@ from skinnet.images import _face_cover as face_cover
 from skinnet.images import _face_skin as face_skin
 from skinnet.images import _skin_colours as skin_colours
 from skinnet.images import _skin_gaps as skin_gaps
+from skinnet.images.faces import _face_regions as face_regions
 from skinnet.images.faces import _face_zones as face_zones
 from skinnet.images.skin_segmentation import SKIN_AREAS
 from skinnet.inference import _doubts as doubts
 from skinnet.inference import _face_checks as faces
-from skinnet.inference._references import balances, profile_use
+from skinnet.inference._references import balances, profile_use, tone_curve
+from skinnet.inference.full_resolution import _colour_table as colour_table
+from skinnet.video import (
+    _blood_response,
+    _face_follower,
+    _frame_colours,
+    _look_series,
+    _map_frame,
+    _noise,
+    _readings,
+    _regions,
+    _resting_maps,
+    _shot,
+    _slow_errors,
+    _texture_space,
+    _tone_doubt,
+    _track_files,
+    _track_panel,
+    _video_frames,
+    track,
+    tracker,
+)
 
 TARGET = Path(__file__).parents[1] / "web" / "src" / "python_data.js"
 
@@ -47,6 +69,13 @@ _SENTENCES = {
     "giveColour": (colour, "give the colour photograph"),
     "greySkin": (colour, "the skin in it is grey"),
     "tone": (colour, "it has one tone of"),
+    "noFace": (tracker, "No face was found in the"),
+    "framesWithoutFace": (tracker, "frames show no face"),
+    "cut": (tracker, "There is a cut at"),
+    "noSkinInVideo": (_resting_maps, "No skin was found in the face of the video"),
+    "compressed": (_video_frames, "bits a pixel"),
+    "unclear": (tracker, "cannot be told"),
+    "disclaimer": (track, "This is no medical device"),
 }
 """Where each sentence is, and some of its words."""
 
@@ -104,6 +133,42 @@ _LIMITS: dict[str, tuple[ModuleType, tuple[str, ...]]] = {
             *("RIGHT_EYE", "LEFT_EYE", "LIPS", "INNER_LIPS", "BROW", "CHIN"),
         ),
     ),
+    "REGION_OUTLINES": (face_regions, ("_WHOLE", "_CHEEKS", "_LEAST_AREA")),
+    "REGIONS": (_regions, ("NAMES", "REGIONS", "FACE")),
+    "STATES": (_readings, ("READ", "LOST", "HIDDEN")),
+    "FOLLOWER": (
+        _face_follower,
+        ("_LEAST_ODDS", "_SEARCH", "_MARGIN", "_SMOOTH", "_CUT", "_THUMBNAIL"),
+    ),
+    "TEXTURE": (_texture_space, ("SIZE", "_MARGIN")),
+    "FRAME_COLOURS": (_frame_colours, ("BRIGHTEST", "DARKEST")),
+    "TONE_CURVE": (tone_curve, ("_STEPS",)),
+    "TONE_DOUBT": (_tone_doubt, ("_BEND_SD", "_STEP", "_LEAST")),
+    "COLOUR_TABLE": (colour_table, ("NODES", "_SHADING")),
+    "RESTING": (_resting_maps, ("_MOST_GLOSS", "_LEAST")),
+    "RESPONSE": (
+        _blood_response,
+        ("_RANGE", "_NODES", "_LEAST_COLOUR", "_ROUNDS", "_ANSWER", "_GAIN_SD"),
+    ),
+    "NOISE": (_noise, ("_SECONDS", "_MOST", "_FLOOR")),
+    "SLOW_ERRORS": (_slow_errors, ("_PATCH", "_LEAST_FILLED", "_SMOOTH", "_SECONDS")),
+    "LOOKS": (
+        _look_series,
+        ("_SPACING", "_MOST", "_LEAST", "_CUT", "_LEAST_SPREAD", "_ROUNDS"),
+    ),
+    "SHOT": (
+        _shot,
+        (
+            *("_LEAST_TEXELS", "_LEAST_SHARE", "_MOST_BUFFERED", "_GLOSS_SD", "_GLOSS_BY_BEND"),
+            *("_GLOSS_BY_SHADING", "_CHROMA_BY_BEND", "_SCALE_SD", "_SCALE_BY_TONE"),
+            *("_MOST_SCALE_SD", "_MOST_FACTOR", "_BLUR"),
+        ),
+    ),
+    "TRACKER": (tracker, ("_BASELINE", "_LOOKS", "_FACTOR", "_MUCH")),
+    "FILES": (_video_frames, ("_LEAST_BITS",)),
+    "CHANGES": (_map_frame, ("LARGEST_CHANGE", "_CHANGE")),
+    "COURSE": (_track_panel, ("_COLOURS", "_SHOWN")),
+    "TRACK_TABLE": (_track_files, ("_FIELDS", "_LEVEL")),
 }
 
 
@@ -122,6 +187,7 @@ def make_module() -> str:
     }
     parts["SENTENCES"]["grey"] = colour._ALL_GREY
     parts["SKIN"]["AREAS"] = SKIN_AREAS
+    parts["TONE_DOUBT"]["USUAL_BEND"] = _tone_doubt.USUAL.bend
     constants = (f"export const {name} = {_write(part)};\n" for name, part in parts.items())
     head = "/** Written by `python -m tools.page_data`; do not change it by hand. */\n"
     return "\n".join((head, *constants))

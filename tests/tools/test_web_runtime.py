@@ -26,8 +26,8 @@ def test_another_file_than_was_tried_is_refused(
 ) -> None:
     def pack(command: list[str], **options: Any) -> "subprocess.CompletedProcess[str]":
         with tarfile.open(Path(command[-1]) / "package.tgz", "w:gz") as archive:
-            for name in web_runtime.CHECKSUMS:
-                member = tarfile.TarInfo(f"package/dist/{name}")
+            for path in web_runtime.PACKAGES[command[3]]:
+                member = tarfile.TarInfo(f"package/{path}")
                 member.size = 5
                 archive.addfile(member, io.BytesIO(b"other"))
         return subprocess.CompletedProcess(command, 0, "", "")

@@ -3,7 +3,7 @@
 import { frameHead } from "./head_crop.js";
 import { COLOUR, SENTENCES, SKIN } from "./python_data.js";
 import { roundHalfEven } from "./rounding.js";
-import { fill } from "./sentences.js";
+import { Refusal, fill } from "./sentences.js";
 import { LINEAR } from "./srgb.js";
 import { findMedian, findPercentile, invert } from "./statistics.js";
 
@@ -28,7 +28,7 @@ export function refuseGrey(photo, name) {
 
 function refuse(name, tone, luma) {
   const remedy = luma < COLOUR.DARK ? SENTENCES.tooDark : SENTENCES.giveColour;
-  throw new Error(fill(SENTENCES.noColour, { name, tone }) + remedy);
+  throw new Refusal(fill(SENTENCES.noColour, { name, tone }) + remedy);
 }
 
 function findTone(photo, box, face, alone, isMarked) {

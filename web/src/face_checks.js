@@ -4,7 +4,7 @@ import { checkColour } from "./colour_content.js";
 import { placeFaceInCut } from "./head_crop.js";
 import { FACES, SENTENCES } from "./python_data.js";
 import { roundHalfEven } from "./rounding.js";
-import { capitalise, fill, toPercent } from "./sentences.js";
+import { Refusal, capitalise, fill, toPercent } from "./sentences.js";
 import { findMedian } from "./statistics.js";
 import { cutSquare, placePoint } from "./turned_square.js";
 
@@ -16,12 +16,12 @@ export function checkFace(photo, crop, face, who, name, isMarked) {
   const start = capitalise(who);
   const width = face.box.right - face.box.left;
   if (width < FACES.LEAST_WIDTH) {
-    throw new Error(fill(SENTENCES.small, { who: start, width, _LEAST_WIDTH: FACES.LEAST_WIDTH }));
+    throw new Refusal(fill(SENTENCES.small, { who: start, width, _LEAST_WIDTH: FACES.LEAST_WIDTH }));
   }
   const share = measureInside(face, photo);
   const inside = toPercent(share);
   if (share < FACES.LEAST_INSIDE) {
-    throw new Error(fill(SENTENCES.outside, { who: start, inside }));
+    throw new Refusal(fill(SENTENCES.outside, { who: start, inside }));
   }
   if (!isMarked) refuseDrawing(photo, face, start);
   checkCrop(photo, crop, face, name, isMarked);
@@ -60,7 +60,7 @@ function refuseDrawing(photo, face, who) {
   });
   const share = measureFlatShare(pixels);
   if (share > FACES.FLAT_SHARE) {
-    throw new Error(fill(SENTENCES.drawn, { who, share: toPercent(share) }));
+    throw new Refusal(fill(SENTENCES.drawn, { who, share: toPercent(share) }));
   }
 }
 

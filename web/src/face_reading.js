@@ -54,7 +54,8 @@ export class FaceReading {
     const whiteDoubts = white ? doubtWhite(who, known.white_balance, blind) : [];
     const notes = [...checked, ...whiteDoubts, ...doubts];
     return new FaceReading({
-      networks, face, crop, planes, width, height, capture, faceSd, fade, notes, photo, skin, head,
+      networks, face, crop, planes, width, height, capture, faceSd, fade, checked, notes, photo, skin,
+      head,
     });
   }
 

@@ -79,8 +79,10 @@ class Networks {
     this.sessions = sessions;
     this.workingSize = Number(metadata["skinnet.working_size"]);
     this.version = metadata["skinnet.version"];
+    this.trainedOn = metadata["skinnet.trained_on"];
     this.optics = metadata["skinnet.optics"];
     this.outputs = JSON.parse(metadata["skinnet.outputs"]);
+    this.regionShare = JSON.parse(metadata["skinnet.region_share"]);
   }
 
   /** Outputs of a network, by name, for inputs [values, shape]. */

@@ -1,4 +1,4 @@
-/** The page: opens a photograph, shows what is read of it, and edits it. */
+/** The page: opens a photograph or a clip, shows what is read of it, and edits a photograph. */
 
 import { paintLine } from "./brush.js";
 import { Camera } from "./camera.js";
@@ -8,6 +8,7 @@ import { MapView } from "./map_view.js";
 import { PictureView } from "./picture_view.js";
 import { Latest, Reader } from "./reader.js";
 import { ValueTable, describeReading, describeValues, readValues } from "./value_table.js";
+import { ClipPanel, isClip } from "./video/clip_panel.js";
 
 const find = (id) => document.getElementById(id);
 
@@ -24,7 +25,7 @@ const HELP = {
 
 const SHOWN_MAPS = Object.keys(SCALES);
 
-/** Another photograph was opened before the worker answered. */
+/** Another photograph or clip was opened before the worker answered. */
 class Superseded extends Error {}
 
 class Page {
@@ -45,11 +46,12 @@ class Page {
     this.panel = new EditPanel(find("sliders"), find("undo"), find("reset"), (factors) =>
       this.attempt(() => this.editing.run(factors)),
     );
+    this.clip = new ClipPanel(this);
     this.listen();
     this.setTool("probe");
     this.attempt(async () => {
       await this.reader.call("open", {});
-      if (!this.photo) this.say("Ready: choose a photograph, or try the sample.");
+      if (!this.generation) this.say("Ready: choose a photograph or a clip, or try the sample.");
     });
   }
 
@@ -58,7 +60,7 @@ class Page {
       if (target.files[0]) this.open(target.files[0], target.files[0].name);
       target.value = "";
     });
-    const camera = new Camera(find("camera"), (blob) => this.open(blob, "camera.png"));
+    const camera = new Camera(find("camera"), (blob, name) => this.open(blob, name));
     find("use-camera").addEventListener("click", () => this.attempt(() => camera.open()));
     find("sample").addEventListener("click", () => this.openSample());
     find("faces").addEventListener("change", ({ target }) => this.readFace(Number(target.value)));
@@ -102,29 +104,51 @@ class Page {
     });
   }
 
+  /** Open a photograph or a clip. */
   open(blob, name) {
+    const isVideo = isClip(blob, name);
+    return this.restart(() => (isVideo ? this.openClip(blob, name) : this.openPhoto(blob, name)));
+  }
+
+  /** Begin something else than what is read now. */
+  restart(action) {
     this.generation += 1;
-    return this.attempt(async () => {
-      this.say(`Reading ${name}…`);
-      const photo = await this.call("readPhoto", { blob, name });
-      Object.assign(this, { photo, reading: null, white: null, read: null, faces: [] });
-      this.readByItself = null;
-      find("face-choice").hidden = true;
-      this.zoom(false);
-      this.histories = new Map();
-      this.panel.setHistory([]);
-      this.picture.setPhoto(photo);
-      find("work").hidden = false;
-      find("maps").hidden = true;
-      find("clear-white").hidden = true;
-      this.say("Looking for faces…");
-      await this.readLargest(true);
-      await this.readLargest(false);
-      if (!this.faces.length) {
-        this.chooseTool("box");
-        throw new Error(`No face was found in ${name}. Mark one by a square around it.`);
-      }
-    });
+    this.cancel();
+    return this.attempt(action);
+  }
+
+  cancel() {
+    this.reader.cancel();
+  }
+
+  openClip(blob, name) {
+    find("work").hidden = true;
+    find("maps").hidden = true;
+    Object.assign(this, { photo: null, reading: null, white: null, read: null, faces: [] });
+    return this.clip.open(blob, name);
+  }
+
+  async openPhoto(blob, name) {
+    this.clip.hide();
+    this.say(`Reading ${name}…`);
+    const photo = await this.call("readPhoto", { blob, name });
+    Object.assign(this, { photo, reading: null, white: null, read: null, faces: [] });
+    this.readByItself = null;
+    find("face-choice").hidden = true;
+    this.zoom(false);
+    this.histories = new Map();
+    this.panel.setHistory([]);
+    this.picture.setPhoto(photo);
+    find("work").hidden = false;
+    find("maps").hidden = true;
+    find("clear-white").hidden = true;
+    this.say("Looking for faces…");
+    await this.readLargest(true);
+    await this.readLargest(false);
+    if (!this.faces.length) {
+      this.chooseTool("box");
+      throw new Error(`No face was found in ${name}. Mark one by a square around it.`);
+    }
   }
 
   /** Find faces, at a glance first, and read the largest unless it is read already. */
@@ -296,11 +320,22 @@ class Page {
   }
 
   /** Call the worker; what it answers is not for a photograph that was opened meanwhile. */
-  async call(name, options) {
+  async call(name, options, onProgress = () => {}) {
     const { generation } = this;
-    const result = await this.reader.call(name, options);
-    if (generation !== this.generation) throw new Superseded();
-    return result;
+    const isCurrent = () => generation === this.generation;
+    try {
+      const result = await this.reader.call(name, options, (progress) => {
+        if (isCurrent()) onProgress(progress);
+      });
+      if (isCurrent()) return result;
+    } catch (error) {
+      if (isCurrent()) throw error;
+    }
+    throw new Superseded();
+  }
+
+  save(blob, name) {
+    save(blob, name);
   }
 
   say(sentence) {

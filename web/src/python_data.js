@@ -20,6 +20,13 @@ export const SENTENCES = {
   giveColour: "give the colour photograph.",
   greySkin: "the skin in it is grey",
   tone: "it has one tone of {cells}; its pixels lie {distance} of 255 levels from it",
+  noFace: "No face was found in the {_number} frames of the video.",
+  framesWithoutFace: "{lost} of {value} frames show no face.",
+  cut: "There is a cut at {time} s: what follows is a shot with a baseline of its own.",
+  noSkinInVideo: "No skin was found in the face of the video; give a video that shows it uncovered.",
+  compressed: "{name} has only {bits} bits a pixel: such compression leaves wrong colours for seconds, and hides the pulse. Intervals are wider; record with less compression.",
+  unclear: "In single frames, changes of blood below about {value} % cannot be told from none in this face: its skin is dark, its light changes, or the video is compressed strongly.",
+  disclaimer: "This is no medical device: it must not be used to diagnose, treat or monitor. It measures colour, not health.",
   grey: "it is grey",
 };
 
@@ -130,4 +137,134 @@ export const OUTLINES = {
   INNER_LIPS: [78, 95, 88, 178, 87, 14, 317, 402, 318, 324, 308, 415, 310, 311, 312, 13, 82, 81, 80, 191],
   BROW: 9,
   CHIN: 152,
+};
+
+export const REGION_OUTLINES = {
+  WHOLE: {"forehead": [[10, 109, 67, 103, 104, 105, 66, 107, 9, 336, 296, 334, 333, 332, 297, 338], []], "nose": [[6, 122, 174, 198, 49, 220, 45, 4, 275, 440, 279, 420, 399, 351], []], "lips": [[61, 146, 91, 181, 84, 17, 314, 405, 321, 375, 291, 409, 270, 269, 267, 0, 37, 39, 40, 185], [78, 95, 88, 178, 87, 14, 317, 402, 318, 324, 308, 415, 310, 311, 312, 13, 82, 81, 80, 191]], "chin": [[182, 83, 18, 313, 406, 418, 262, 369, 396, 175, 171, 140, 32, 194], []]},
+  CHEEKS: [[[117, 118, 101, 36, 205, 187, 123], []], [[346, 347, 330, 266, 425, 411, 352], []]],
+  LEAST_AREA: 0.3,
+};
+
+export const REGIONS = {
+  NAMES: ["face", "forehead", "left_cheek", "right_cheek", "nose", "lips", "chin"],
+  REGIONS: ["forehead", "left_cheek", "right_cheek", "nose", "lips", "chin"],
+  FACE: "face",
+};
+
+export const STATES = {
+  READ: "read",
+  LOST: "lost",
+  HIDDEN: "hidden",
+};
+
+export const FOLLOWER = {
+  LEAST_ODDS: 0.0,
+  SEARCH: 0.25,
+  MARGIN: 1.5,
+  SMOOTH: 0.15,
+  CUT: 0.35,
+  THUMBNAIL: [32, 18],
+};
+
+export const TEXTURE = {
+  SIZE: 96,
+  MARGIN: 1.28,
+};
+
+export const FRAME_COLOURS = {
+  BRIGHTEST: 0.94,
+  DARKEST: 0.0025,
+};
+
+export const TONE_CURVE = {
+  STEPS: 2048,
+};
+
+export const TONE_DOUBT = {
+  BEND_SD: 0.15,
+  STEP: 0.02,
+  LEAST: 1e-06,
+  USUAL_BEND: 0.12,
+};
+
+export const COLOUR_TABLE = {
+  NODES: [192, 128],
+  SHADING: 0.25,
+};
+
+export const RESTING = {
+  MOST_GLOSS: 0.5,
+  LEAST: 0.0001,
+};
+
+export const RESPONSE = {
+  RANGE: 1.6,
+  NODES: 65,
+  LEAST_COLOUR: 0.0001,
+  ROUNDS: 4,
+  ANSWER: [0.64, -0.0765],
+  GAIN_SD: 2.0,
+};
+
+export const NOISE = {
+  SECONDS: 2.0,
+  MOST: 16.0,
+  FLOOR: 0.0003,
+};
+
+export const SLOW_ERRORS = {
+  PATCH: 8,
+  LEAST_FILLED: 0.25,
+  SMOOTH: 0.5,
+  SECONDS: 2.0,
+};
+
+export const LOOKS = {
+  SPACING: 2.0,
+  MOST: 16,
+  LEAST: 0.0001,
+  CUT: 1.5,
+  LEAST_SPREAD: 0.01,
+  ROUNDS: 3,
+};
+
+export const SHOT = {
+  LEAST_TEXELS: 12,
+  LEAST_SHARE: 0.4,
+  MOST_BUFFERED: 1200,
+  GLOSS_SD: 0.006,
+  GLOSS_BY_BEND: 0.5,
+  GLOSS_BY_SHADING: 0.5,
+  CHROMA_BY_BEND: 0.05,
+  SCALE_SD: 0.22,
+  SCALE_BY_TONE: [0.1, 0.3],
+  MOST_SCALE_SD: 0.45,
+  MOST_FACTOR: 25.0,
+  BLUR: 2.5,
+};
+
+export const TRACKER = {
+  BASELINE: [0.0, 3.0],
+  LOOKS: 5,
+  FACTOR: 1.645,
+  MUCH: 0.15,
+};
+
+export const FILES = {
+  LEAST_BITS: 0.05,
+};
+
+export const CHANGES = {
+  LARGEST_CHANGE: 0.6,
+  CHANGE: [[5, 48, 97], [33, 102, 172], [67, 147, 195], [146, 197, 222], [209, 229, 240], [247, 247, 247], [253, 219, 199], [244, 165, 130], [214, 96, 77], [178, 24, 43], [103, 0, 31]],
+};
+
+export const COURSE = {
+  COLOURS: {"face": [38, 38, 40], "forehead": [0, 114, 178], "left_cheek": [213, 94, 0], "right_cheek": [204, 121, 167], "nose": [0, 158, 115], "lips": [200, 30, 45], "chin": [150, 120, 40]},
+  SHOWN: 0.08,
+};
+
+export const TRACK_TABLE = {
+  FIELDS: ["hemoglobin", "hemoglobin_low", "hemoglobin_high", "log_ratio", "log_ratio_sd"],
+  LEVEL: 0.9,
 };

@@ -5,8 +5,12 @@ export class Reader {
     this.worker = new Worker(new URL("worker.js", import.meta.url), { type: "module" });
     this.waiting = new Map();
     this.count = 0;
-    this.worker.onmessage = ({ data: { id, result, error } }) => {
-      const { resolve, reject } = this.waiting.get(id);
+    this.worker.onmessage = ({ data: { id, result, error, progress } }) => {
+      const { resolve, reject, onProgress } = this.waiting.get(id);
+      if (progress) {
+        onProgress(progress);
+        return;
+      }
       this.waiting.delete(id);
       if (error === undefined) resolve(result);
       else reject(new Error(error));
@@ -18,12 +22,18 @@ export class Reader {
     };
   }
 
-  call(name, options) {
+  /** Call by name; `onProgress` hears of it meanwhile, if the call reports any. */
+  call(name, options, onProgress = () => {}) {
     const id = this.count++;
     return new Promise((resolve, reject) => {
-      this.waiting.set(id, { resolve, reject });
+      this.waiting.set(id, { resolve, reject, onProgress });
       this.worker.postMessage({ id, name, options });
     });
+  }
+
+  /** End the clips that are being read; what was read of them is kept. */
+  cancel() {
+    this.worker.postMessage({ id: this.count - 1, name: "cancel" });
   }
 }
 

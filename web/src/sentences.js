@@ -2,6 +2,9 @@
 
 import { roundHalfEven } from "./rounding.js";
 
+/** A photograph or a frame that cannot be read. */
+export class Refusal extends Error {}
+
 export function fill(sentence, values) {
   return sentence.replace(/\{(\w+)\}/g, (_, name) => values[name]);
 }

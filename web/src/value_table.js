@@ -96,11 +96,11 @@ function fill(cell, found) {
   cell.append(small);
 }
 
-function format(share) {
+export function format(share) {
   return `${formatNumber(share)} %`;
 }
 
-function formatInterval([low, high]) {
+export function formatInterval([low, high]) {
   return `${formatNumber(low)} to ${formatNumber(high)} %`;
 }
 

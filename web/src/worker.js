@@ -3,11 +3,13 @@
 import { openNetworks } from "./networks.js";
 import { PhotoSession, makeFace } from "./photo_session.js";
 import { readPicture } from "./picture_file.js";
+import { ClipSession } from "./video/clip_session.js";
 
 const opening = openNetworks(new URL("..", self.location.href));
 opening.catch(() => {}); // the first call reports it
 
 let session = null;
+let lastCancelled = -1; // clips that were asked for up to this call are cancelled
 
 const CALLS = {
   async open() {
@@ -18,6 +20,13 @@ const CALLS = {
     const photo = await readPicture(blob, name);
     session = new PhotoSession(await opening, photo, name);
     return session.describePhoto();
+  },
+
+  async readClip({ blob, name, choice, baseline }, id) {
+    session = null;
+    const report = (progress) => self.postMessage({ id, progress });
+    const clip = new ClipSession(await opening, report, () => id <= lastCancelled);
+    return clip.read(blob, name, choice, baseline);
   },
 
   findFaces({ isQuick }) {
@@ -48,6 +57,10 @@ const CALLS = {
 let queue = Promise.resolve();
 
 self.onmessage = ({ data: { id, name, options } }) => {
+  if (name === "cancel") {
+    lastCancelled = id;
+    return;
+  }
   queue = queue.then(() => answer(id, name, options));
   if (name.startsWith("read")) queue = queue.then(prepare);
 };
@@ -59,7 +72,7 @@ async function prepare() {
 
 async function answer(id, name, options) {
   try {
-    self.postMessage({ id, result: await CALLS[name](options ?? {}) });
+    self.postMessage({ id, result: await CALLS[name](options ?? {}, id) });
   } catch (error) {
     self.postMessage({ id, error: error.message });
   }

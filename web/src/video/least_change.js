@@ -1,0 +1,22 @@
+/** The smallest change that a single frame tells from none (`tracker.py`). */
+
+import { REGIONS, SENTENCES, TRACKER } from "../python_data.js";
+import { fill } from "../sentences.js";
+
+/** Relative changes by the names of the regions; null where a region is hidden. */
+export function findLeastChange(readings) {
+  const least = REGIONS.NAMES.map((name, at) => {
+    const known = readings.map(({ noiseSd }) => noiseSd[at]).filter(Number.isFinite);
+    if (!known.length) return [name, null];
+    const variance = known.reduce((sum, sd) => sum + sd ** 2, 0) / known.length;
+    return [name, Number((Math.exp(TRACKER.FACTOR * Math.sqrt(variance)) - 1).toFixed(4))];
+  });
+  return Object.fromEntries(least);
+}
+
+/** Sentences on a face of which single frames tell little. */
+export function noteLeastChange(least) {
+  const face = least[REGIONS.FACE];
+  if (face === null || face <= TRACKER.MUCH) return [];
+  return [fill(SENTENCES.unclear, { value: Math.round(100 * face) })];
+}
