@@ -38,6 +38,7 @@ from skinnet.video import (
     _resting_maps,
     _shot,
     _slow_errors,
+    _still_image,
     _texture_space,
     _tone_doubt,
     _track_files,
@@ -74,6 +75,7 @@ _SENTENCES = {
     "cut": (tracker, "There is a cut at"),
     "noSkinInVideo": (_resting_maps, "No skin was found in the face of the video"),
     "compressed": (_video_frames, "bits a pixel"),
+    "shotRefused": (tracker, "is not read"),
     "unclear": (tracker, "cannot be told"),
     "disclaimer": (track, "This is no medical device"),
 }
@@ -165,6 +167,7 @@ _LIMITS: dict[str, tuple[ModuleType, tuple[str, ...]]] = {
         ),
     ),
     "TRACKER": (tracker, ("_BASELINE", "_LOOKS", "_FACTOR", "_MUCH")),
+    "STILL": (_still_image, ("_BLOCK", "_MOST_BLOCK", "_MOST_MEAN", "_LEAST_SECONDS")),
     "FILES": (_video_frames, ("_LEAST_BITS",)),
     "CHANGES": (_map_frame, ("LARGEST_CHANGE", "_CHANGE")),
     "COURSE": (_track_panel, ("_COLOURS", "_SHOWN")),

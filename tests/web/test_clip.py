@@ -4,6 +4,8 @@ import base64
 import csv
 import io
 import json
+import re
+import struct
 from collections.abc import Callable, Iterator
 from pathlib import Path
 from typing import Any, NamedTuple
@@ -229,6 +231,39 @@ def test_the_page_asks_which_face_is_meant(open_page: Callable[..., Any], tmp_pa
     page.wait_for_timeout(300)
     drawn = read_map(page, 0.1)[..., 3] > 0
     assert drawn[:, drawn.shape[1] // 2 :].sum() > 10 * drawn[:, : drawn.shape[1] // 2].sum()
+
+
+def test_the_rotation_of_a_phone_is_applied(open_page: Callable[..., Any], tmp_path: Path) -> None:
+    pytest.importorskip("av")
+    turned = [np.ascontiguousarray(np.rot90(each)) for each in make_frames(6)]
+    content = bytearray(write_video(tmp_path / "phone.mp4", turned).read_bytes())
+    start = content.index(b"tkhd") + 44  # the display matrix of a version 0 header
+    clockwise = (0, 1 << 16, 0, -(1 << 16), 0, 0, 256 << 16, 0, 1 << 30)
+    content[start : start + 36] = struct.pack(">9i", *clockwise)
+    page = open_page()
+    open_clip(page, "phone.mp4", bytes(content))
+    page.locator("#clip-result").wait_for(timeout=FIRST_MAPS_MS)
+    page.wait_for_timeout(300)
+    rows, columns = np.nonzero(read_map(page, 0.1)[..., 3])
+    (face,) = find_faces(make_frames(1)[0])
+    height, width = face.box.height, face.box.width
+    assert abs(rows.mean() - (face.box.top + face.box.bottom) / 2) < 0.15 * height
+    assert abs(columns.mean() - (face.box.left + face.box.right) / 2) < 0.15 * width
+
+
+def test_a_clip_is_recorded_by_the_camera(open_page: Callable[..., Any]) -> None:
+    page = open_page()
+    page.click("#use-camera")
+    page.locator("#camera video").evaluate(
+        "(video) => new Promise((done) => video.requestVideoFrameCallback(done))"
+    )
+    page.get_by_text("Record a clip").click()
+    page.wait_for_timeout(1500)
+    page.get_by_text("Stop recording").click()
+    # A busy machine may record one frame alone.
+    sentence = re.compile("No face was found in the|it is a still image")
+    page.locator("#error").filter(has_text=sentence).wait_for(timeout=FIRST_MAPS_MS)
+    assert not page.locator("#camera").evaluate("(dialog) => dialog.open")
 
 
 def test_vp9_is_read_and_reading_can_be_stopped(

@@ -25,6 +25,7 @@ export const SENTENCES = {
   cut: "There is a cut at {time} s: what follows is a shot with a baseline of its own.",
   noSkinInVideo: "No skin was found in the face of the video; give a video that shows it uncovered.",
   compressed: "{name} has only {bits} bits a pixel: such compression leaves wrong colours for seconds, and hides the pulse. Intervals are wider; record with less compression.",
+  shotRefused: "The shot from {start} s is not read: {refusal}",
   unclear: "In single frames, changes of blood below about {value} % cannot be told from none in this face: its skin is dark, its light changes, or the video is compressed strongly.",
   disclaimer: "This is no medical device: it must not be used to diagnose, treat or monitor. It measures colour, not health.",
   grey: "it is grey",
@@ -247,7 +248,14 @@ export const TRACKER = {
   BASELINE: [0.0, 3.0],
   LOOKS: 5,
   FACTOR: 1.645,
-  MUCH: 0.15,
+  MUCH: 0.12,
+};
+
+export const STILL = {
+  BLOCK: 8,
+  MOST_BLOCK: 4.0,
+  MOST_MEAN: 1.2,
+  LEAST_SECONDS: 1.0,
 };
 
 export const FILES = {

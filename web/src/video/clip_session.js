@@ -8,6 +8,7 @@ import { ClipFrames } from "./clip_frames.js";
 import { ClipTracker } from "./clip_tracker.js";
 import { SeveralFaces } from "./face_follower.js";
 import { findLeastChange, noteLeastChange } from "./least_change.js";
+import { StillImage } from "./still_image.js";
 
 const VIEW = 1024; // longest side, in pixels, of the frame in which a face is chosen
 
@@ -29,12 +30,12 @@ export class ClipSession {
 
   async track(frames, name, tracker) {
     const readings = [];
-    let [size, before, isStill] = [null, null, true];
+    const still = new StillImage();
+    let size = null;
     for await (const { frame, time } of frames) {
       if (this.isCancelled()) break;
       size ??= [frame.width, frame.height];
-      isStill &&= before === null || isSame(before, frame);
-      before = isStill ? frame : null;
+      still.add(frame, time);
       try {
         readings.push(...(await tracker.add(frame, time)).map(packReading));
       } catch (error) {
@@ -46,7 +47,7 @@ export class ClipSession {
     }
     if (!tracker.number && this.isCancelled()) throw new Error("It was cancelled before any frame.");
     if (!tracker.number) throw new Error(`${name} has no frames that can be read.`);
-    if (isStill) refuseStill(name);
+    if (still.isStill && !this.isCancelled()) refuseStill(name);
     readings.push(...(await tracker.finish()).map(packReading));
     return this.describe(frames, name, tracker, readings, size);
   }
@@ -70,15 +71,10 @@ export class ClipSession {
   }
 }
 
-function isSame(before, frame) {
-  const [one, other] = [before, frame].map(({ data }) => new Uint32Array(data.buffer));
-  return one.length === other.length && one.every((pixel, at) => pixel === other[at]);
-}
-
 function refuseStill(name) {
   throw new Error(
-    `All frames of ${name} are the same: it is a still image, in which nothing changes over time; ` +
-      "give a photograph to read it.",
+    `All frames of ${name} are the same but for compression: it is a still image, in which nothing ` +
+      "changes over time; give a photograph to read it.",
   );
 }
 

@@ -15,6 +15,7 @@ const LEVEL = 0.9; // of the intervals
 export class ClipTracker {
   constructor(networks, choice, baseline = TRACKER.BASELINE) {
     Object.assign(this, { networks, baseline, shot: null, shots: [], rests: [], spaces: [] });
+    this.refusal = null;
     this.follower = new FaceFollower(networks, choice);
     this.notes = new Set();
     Object.assign(this, { number: 0, last: 0 });
@@ -41,7 +42,9 @@ export class ClipTracker {
       if (!followed.landmarks) return [makeBlank(this.number, time, number, STATES.LOST)];
       this.shot = new Shot(this.networks, number, time, this.baseline);
     }
-    return this.shot.add(this.number, time, frame, followed);
+    const readings = await this.shot.add(this.number, time, frame, followed);
+    if (this.shot.isRefused && !this.rests.length) throw this.shot.refusal;
+    return readings;
   }
 
   /** End the shot at a cut: another light and white balance may begin. */
@@ -56,10 +59,20 @@ export class ClipTracker {
     if (!shot) return [];
     this.shot = null;
     const waiting = await shot.finish();
-    if (!shot.rest) return waiting;
+    if (!shot.rest) {
+      this.noteRefusal(shot);
+      return waiting;
+    }
     shot.notes.forEach((note) => this.notes.add(note));
     this.keepShot(shot, shot.poolMelanin());
     return waiting;
+  }
+
+  noteRefusal({ refusal, start }) {
+    if (!refusal) return;
+    this.refusal ??= refusal;
+    const values = { start: start.toFixed(2), refusal: refusal.message };
+    this.notes.add(fill(SENTENCES.shotRefused, values));
   }
 
   keepShot({ number, start, rest, hemoglobin, space }, melanin) {
@@ -76,6 +89,7 @@ export class ClipTracker {
 
   /** Means of the regions with their intervals: melanin of all shots, hemoglobin of the first. */
   summarise() {
+    if (!this.rests.length && this.refusal) throw this.refusal;
     if (!this.rests.length) throw new Error(fill(SENTENCES.noFace, { _number: this.number }));
     const shots = this.rests.map(({ number, melanin }) => ({ ...melanin, number }));
     const pool = (find) => REGIONS.NAMES.map((_, at) => {

@@ -26,10 +26,12 @@ export class Shot {
     Object.assign(this, { networks, number, start, baseline, space: null, rest: null });
     Object.assign(this, { waiting: [], looks: [], notes: [], doubt: new ToneDoubt() });
     this.series = new LookSeries();
+    Object.assign(this, { refusal: null, isRefused: false }); // why no frame of it could be read
   }
 
   /** Add a frame. Returns the readings that are ready: all of the baseline at its end. */
   async add(number, time, frame, { landmarks, bend }) {
+    if (this.isRefused) return [makeBlank(number, time, this.number, STATES.HIDDEN)];
     const colours = landmarks && this.sample(frame, landmarks);
     if (!this.rest && colours) await this.look(frame, time, landmarks);
     const one = { number, time, colours, bend, landmarks };
@@ -38,8 +40,8 @@ export class Shot {
       return [this.read(one)];
     }
     if (this.waiting.length < SHOT.MOST_BUFFERED) this.waiting.push(one);
-    const isOver = time - this.start >= this.baseline[1] && this.looks.length;
-    return isOver ? this.finish() : [];
+    const isKnown = this.looks.length || this.refusal;
+    return isKnown && time - this.start >= this.baseline[1] ? this.finish() : [];
   }
 
   /** End the baseline now. Returns the readings of the frames that waited. */
@@ -48,7 +50,9 @@ export class Shot {
     this.waiting = [];
     if (!this.rest && this.looks.length) await this.begin(waiting);
     if (this.rest) return waiting.map((one) => this.read(one));
-    return waiting.map(({ number, time }) => makeBlank(number, time, this.number, STATES.LOST));
+    this.isRefused = this.refusal !== null;
+    const state = this.isRefused ? STATES.HIDDEN : STATES.LOST;
+    return waiting.map(({ number, time }) => makeBlank(number, time, this.number, state));
   }
 
   sample(frame, landmarks) {
@@ -62,7 +66,19 @@ export class Shot {
     const gap = (end - begin) / Math.max(TRACKER.LOOKS - 1, 1);
     const due = begin + this.looks.length * gap;
     if (time - this.start < due - 1e-6 || this.looks.length >= TRACKER.LOOKS) return;
-    this.looks.push({ ...(await this.readLook(frame, time, landmarks)), time });
+    const look = await this.attempt(frame, time, landmarks);
+    if (look) this.looks.push({ ...look, time });
+  }
+
+  /** Read a frame; null if it cannot be read, such as a face that is too small. */
+  async attempt(frame, time, landmarks) {
+    try {
+      return await this.readLook(frame, time, landmarks);
+    } catch (error) {
+      if (!(error instanceof Refusal)) throw error;
+      this.refusal = error;
+      return null;
+    }
   }
 
   readLook(frame, time, landmarks) {
@@ -74,11 +90,8 @@ export class Shot {
   /** Read melanin once more; readings that were given do not depend on it. */
   async lookAgain(frame, time, landmarks) {
     this.series.postpone(time);
-    try {
-      this.addMelanin(time, await this.readLook(frame, time, landmarks));
-    } catch (error) {
-      if (!(error instanceof Refusal)) throw error; // such as a face that has become too small
-    }
+    const look = await this.attempt(frame, time, landmarks);
+    if (look) this.addMelanin(time, look);
   }
 
   addMelanin(time, { maps }) {
