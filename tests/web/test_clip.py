@@ -70,15 +70,28 @@ def clip_page(server: PageServer, browser: Any, clip: Path) -> Iterator[Any]:
     """The page with the clip read; tests leave it as they found it."""
     context = browser.new_context(viewport={"width": 1280, "height": 1600})
     page = context.new_page()
-    page.faults = []
-    page.on("pageerror", lambda error: page.faults.append(str(error)))
+    faults: list[str] = []
+    page.on("pageerror", lambda error: faults.append(str(error)))
     page.goto(server.address)
     page.evaluate(f"document.getElementById('clip-baseline').value = {BASELINE}")
     page.set_input_files("#file", str(clip))
     page.locator("#clip-result").wait_for(timeout=FIRST_MAPS_MS)
     yield page
-    assert not page.faults
     context.close()
+    assert not faults
+
+
+@pytest.fixture(scope="module")
+def page(server: PageServer, browser: Any) -> Iterator[Any]:
+    """The page, in which tests open one clip after the other."""
+    context = browser.new_context()
+    page = context.new_page()
+    faults: list[str] = []
+    page.on("pageerror", lambda error: faults.append(str(error)))
+    page.goto(server.address)
+    yield page
+    context.close()
+    assert not faults
 
 
 def download(page: Any, button: str) -> tuple[str, str]:
@@ -194,7 +207,7 @@ def make_video(
     return path.read_bytes()
 
 
-def test_what_cannot_be_read_is_a_sentence(open_page: Callable[..., Any], tmp_path: Path) -> None:
+def test_what_cannot_be_read_is_a_sentence(page: Any, tmp_path: Path) -> None:
     rng = np.random.default_rng(0)
     noise = list(rng.integers(0, 255, (3, 64, 64, 3), np.uint8))
     wall = [np.full((64, 64, 3), level, np.uint8) for level in range(100, 160, 4)]
@@ -209,18 +222,16 @@ def test_what_cannot_be_read_is_a_sentence(open_page: Callable[..., Any], tmp_pa
         "it is a still image": make_video(tmp_path / "c.mp4", wall[:1] * 4),
         "No face was found in the 15 frames": make_video(tmp_path / "d.mp4", wall),
     }
-    page = open_page()
     for sentence, content in cases.items():
         open_clip(page, "other.mp4", content)
         page.locator("#error").filter(has_text=sentence).wait_for(timeout=FIRST_MAPS_MS)
         assert page.locator("#clip-result").is_hidden() and page.locator("#clip-work").is_hidden()
 
 
-def test_the_page_asks_which_face_is_meant(open_page: Callable[..., Any], tmp_path: Path) -> None:
+def test_the_page_asks_which_face_is_meant(page: Any, tmp_path: Path) -> None:
     pytest.importorskip("av")
     frames = [np.hstack([each, each[:, ::-1]]) for each in make_frames(6)]
     content = write_video(tmp_path / "two.mp4", frames).read_bytes()
-    page = open_page()
     open_clip(page, "two.mp4", content)
     second = page.get_by_label("Face 2 of 2")
     second.wait_for(timeout=FIRST_MAPS_MS)
@@ -233,14 +244,13 @@ def test_the_page_asks_which_face_is_meant(open_page: Callable[..., Any], tmp_pa
     assert drawn[:, drawn.shape[1] // 2 :].sum() > 10 * drawn[:, : drawn.shape[1] // 2].sum()
 
 
-def test_the_rotation_of_a_phone_is_applied(open_page: Callable[..., Any], tmp_path: Path) -> None:
+def test_the_rotation_of_a_phone_is_applied(page: Any, tmp_path: Path) -> None:
     pytest.importorskip("av")
     turned = [np.ascontiguousarray(np.rot90(each)) for each in make_frames(6)]
     content = bytearray(write_video(tmp_path / "phone.mp4", turned).read_bytes())
     start = content.index(b"tkhd") + 44  # the display matrix of a version 0 header
     clockwise = (0, 1 << 16, 0, -(1 << 16), 0, 0, 256 << 16, 0, 1 << 30)
     content[start : start + 36] = struct.pack(">9i", *clockwise)
-    page = open_page()
     open_clip(page, "phone.mp4", bytes(content))
     page.locator("#clip-result").wait_for(timeout=FIRST_MAPS_MS)
     page.wait_for_timeout(300)
@@ -251,8 +261,7 @@ def test_the_rotation_of_a_phone_is_applied(open_page: Callable[..., Any], tmp_p
     assert abs(columns.mean() - (face.box.left + face.box.right) / 2) < 0.15 * width
 
 
-def test_a_clip_is_recorded_by_the_camera(open_page: Callable[..., Any]) -> None:
-    page = open_page()
+def test_a_clip_is_recorded_by_the_camera(page: Any) -> None:
     page.click("#use-camera")
     page.locator("#camera video").evaluate(
         "(video) => new Promise((done) => video.requestVideoFrameCallback(done))"
@@ -266,11 +275,8 @@ def test_a_clip_is_recorded_by_the_camera(open_page: Callable[..., Any]) -> None
     assert not page.locator("#camera").evaluate("(dialog) => dialog.open")
 
 
-def test_vp9_is_read_and_reading_can_be_stopped(
-    open_page: Callable[..., Any], tmp_path: Path
-) -> None:
+def test_vp9_is_read_and_reading_can_be_stopped(page: Any, tmp_path: Path) -> None:
     content = make_video(tmp_path / "clip.webm", make_frames(80), "libvpx-vp9")
-    page = open_page()
     open_clip(page, "clip.webm", content, "video/webm")
     page.locator("#clip-done").filter(has_text="frames").wait_for(timeout=FIRST_MAPS_MS)
     page.locator("#clip-cancel").focus()

@@ -31,6 +31,8 @@ export class ClipPlayer {
     this.fit(clip.size);
     this.address = URL.createObjectURL(blob);
     this.video.src = this.address;
+    if (matchMedia("(prefers-reduced-motion: reduce)").matches) return;
+    this.video.play().catch(() => {}); // the user can start it
   }
 
   /** Give the player the form of the frames, so that the map lies over them. */

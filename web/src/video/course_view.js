@@ -14,19 +14,14 @@ export class CourseView {
   constructor(canvas, onTime) {
     Object.assign(this, { canvas, time: 0, shown: new Set(REGIONS.NAMES) });
     new ResizeObserver(() => this.draw()).observe(canvas);
+    this.plot = new OffscreenCanvas(1, 1); // all but the mark of the time
     canvas.addEventListener("click", (event) => {
-      if (!this.readings) return;
+      if (!this.box) return;
       const { left, right } = this.box;
       const x = event.clientX - canvas.getBoundingClientRect().left;
       const share = Math.min(1, Math.max(0, (x - left) / (right - left)));
       onTime(this.start + share * (this.end - this.start));
     });
-  }
-
-  /** The place of the plot in the canvas, in pixels of CSS. */
-  get box() {
-    const { left, top, right, bottom } = MARGINS;
-    return { left, top, right: this.canvas.clientWidth - right, bottom: HEIGHT - bottom };
   }
 
   setReadings(readings) {
@@ -41,7 +36,7 @@ export class CourseView {
 
   setTime(time) {
     this.time = time;
-    this.draw();
+    this.mark();
   }
 
   show(name, isShown) {
@@ -62,22 +57,36 @@ export class CourseView {
   }
 
   draw() {
-    const { canvas } = this;
-    if (!this.readings || !canvas.clientWidth) return;
-    const density = globalThis.devicePixelRatio || 1;
-    const context = canvas.getContext("2d");
-    canvas.width = Math.round(canvas.clientWidth * density);
-    canvas.height = Math.round(HEIGHT * density);
-    context.scale(density, density);
+    const { canvas, plot } = this;
+    const width = canvas.clientWidth;
+    if (!this.readings || !width) return;
+    const { left, top, right, bottom } = MARGINS;
+    this.box = { left, top, right: width - right, bottom: HEIGHT - bottom };
+    this.density = globalThis.devicePixelRatio || 1;
+    const [across, down] = [width, HEIGHT].map((side) => Math.round(side * this.density));
+    Object.assign(canvas, { width: across, height: down });
+    Object.assign(plot, { width: across, height: down });
+    const context = plot.getContext("2d");
+    context.scale(this.density, this.density);
     this.drawGrid(context);
     if (this.shown.has(REGIONS.FACE)) this.drawBand(context);
     REGIONS.NAMES.forEach((name, at) => {
       if (at && this.shown.has(name)) this.drawLine(context, at, toColour(name), 2);
     });
     if (this.shown.has(REGIONS.FACE)) this.drawLine(context, 0, readStyle(this.canvas, "--ink"), 3);
-    context.fillStyle = readStyle(this.canvas, "--accent");
-    const { top, bottom } = this.box;
-    context.fillRect(this.x(this.time) - 1, top, 2, bottom - top);
+    this.mark();
+  }
+
+  /** Draw the plot, and mark the time that is shown. */
+  mark() {
+    const { canvas, plot, box, density } = this;
+    if (!box) return;
+    const context = canvas.getContext("2d");
+    context.clearRect(0, 0, canvas.width, canvas.height);
+    context.drawImage(plot, 0, 0);
+    context.fillStyle = readStyle(canvas, "--accent");
+    const [x, top, height] = [this.x(this.time) - 1, box.top, box.bottom - box.top];
+    context.fillRect(...[x, top, 2, height].map((side) => side * density));
   }
 
   drawGrid(context) {
