@@ -28,7 +28,7 @@ export class ClipPanel {
       this.table.setReading(reading);
     };
     const note = () => find("clip-notes").append(makeItem(CANNOT_PLAY));
-    this.player = new ClipPlayer(find("clip-video"), find("clip-map"), showTime, note);
+    this.player = new ClipPlayer(find("clip-player"), showTime, note);
     this.course = new CourseView(find("clip-course"), (time) => this.player.seek(time));
     this.table = new RegionTable(find("clip-regions").tBodies[0], (name, isShown) =>
       this.course.show(name, isShown),

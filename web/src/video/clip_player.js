@@ -7,24 +7,38 @@ const SIDE = 560; // longer side, in pixels, of the map over the clip
 
 export class ClipPlayer {
   /** Calls `onTime(time, reading)` with each frame that is shown, and `onFault` if it cannot play. */
-  constructor(video, canvas, onTime, onFault) {
-    Object.assign(this, { video, canvas, onTime, clip: null, isShown: true });
-    video.addEventListener("seeked", () => this.draw(video.currentTime));
-    video.addEventListener("loadeddata", () => this.draw(video.currentTime));
-    video.addEventListener("error", () => { if (this.clip) onFault(); });
-    if (video.requestVideoFrameCallback) this.wait();
-    else video.addEventListener("timeupdate", () => this.draw(video.currentTime));
+  constructor(element, onTime, onFault) {
+    Object.assign(this, { element, onTime, onFault, clip: null, isShown: true });
+    this.canvas = element.querySelector("canvas");
+    this.video = null;
   }
 
-  wait() {
-    this.video.requestVideoFrameCallback((_, { mediaTime }) => {
+  /** A player of one clip, which comes and goes with it. */
+  build() {
+    const video = document.createElement("video");
+    Object.assign(video, { id: "clip-video", controls: true, loop: true, muted: true });
+    video.playsInline = true;
+    video.setAttribute("aria-label", "The clip");
+    const show = () => this.draw(video.currentTime);
+    const events = ["seeked", "loadeddata", ...(video.requestVideoFrameCallback ? [] : ["timeupdate"])];
+    for (const event of events) video.addEventListener(event, show);
+    video.addEventListener("error", () => { if (this.clip) this.onFault(); });
+    this.video = video;
+    this.element.prepend(video);
+    if (video.requestVideoFrameCallback) this.wait(video);
+  }
+
+  wait(video) {
+    video.requestVideoFrameCallback((_, { mediaTime }) => {
+      if (video !== this.video) return;
       this.draw(mediaTime);
-      this.wait();
+      this.wait(video);
     });
   }
 
   setClip(blob, clip) {
     this.clear();
+    this.build();
     this.clip = clip;
     const scale = Math.min(1, SIDE / Math.max(...clip.size));
     [this.canvas.width, this.canvas.height] = clip.size.map((side) => Math.round(side * scale));
@@ -37,23 +51,23 @@ export class ClipPlayer {
 
   /** Give the player the form of the frames, so that the map lies over them. */
   fit([width, height]) {
-    const { style } = this.video.parentElement;
+    const { style } = this.element;
     style.aspectRatio = `${width} / ${height}`;
     style.width = `min(100%, 36rem, calc(70vh * ${width / height}))`;
   }
 
   clear() {
     this.clip = null;
-    this.video.pause();
-    this.video.removeAttribute("src");
-    this.video.load();
+    this.video?.pause();
+    this.video?.remove();
+    this.video = null;
     if (this.address) URL.revokeObjectURL(this.address);
     this.address = null;
   }
 
   /** Move to a time of the readings. */
   seek(time) {
-    this.video.currentTime = time + this.clip.start + 1e-4;
+    if (this.video) this.video.currentTime = time + this.clip.start + 1e-4;
   }
 
   setOpacity(share) {
@@ -62,7 +76,7 @@ export class ClipPlayer {
 
   show(isShown) {
     this.isShown = isShown;
-    this.draw(this.video.currentTime);
+    if (this.video) this.draw(this.video.currentTime);
   }
 
   draw(mediaTime) {
