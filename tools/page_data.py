@@ -77,6 +77,8 @@ _SENTENCES = {
     "compressed": (_video_frames, "bits a pixel"),
     "shotRefused": (tracker, "is not read"),
     "unclear": (tracker, "cannot be told"),
+    "unreadable": (tracker, "cannot be read in this face"),
+    "whyUnclear": (tracker, "its skin is dark"),
     "disclaimer": (track, "This is no medical device"),
 }
 """Where each sentence is, and some of its words."""
@@ -166,7 +168,7 @@ _LIMITS: dict[str, tuple[ModuleType, tuple[str, ...]]] = {
             *("_MOST_SCALE_SD", "_MOST_FACTOR", "_BLUR"),
         ),
     ),
-    "TRACKER": (tracker, ("_BASELINE", "_LOOKS", "_FACTOR", "_MUCH")),
+    "TRACKER": (tracker, ("_BASELINE", "_LOOKS", "_FACTOR", "_MUCH", "UNREADABLE")),
     "STILL": (_still_image, ("_BLOCK", "_MOST_BLOCK", "_MOST_MEAN", "_LEAST_SECONDS")),
     "FILES": (_video_frames, ("_LEAST_BITS",)),
     "CHANGES": (_map_frame, ("LARGEST_CHANGE", "_CHANGE")),

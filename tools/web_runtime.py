@@ -71,7 +71,7 @@ def fetch(target: Path) -> None:
             f"npm is not installed, and the web page needs {' and '.join(PACKAGES)}; install "
             "Node.js with npm, and run this again. All else works without it."
         )
-    contents = {}
+    contents: dict[str, bytes] = {}
     for package in PACKAGES:
         contents |= _download(npm, package)
     target.mkdir(parents=True, exist_ok=True)

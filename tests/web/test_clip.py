@@ -134,6 +134,12 @@ def test_the_summary_has_what_is_computed(clip_page: Any, in_python: InPython) -
         found, wanted = summary[pigment]["face"], expected[pigment]["face"]
         assert found["mean"] == pytest.approx(wanted["mean"], rel=0.05)
         assert set(found) == set(wanted) and list(summary[pigment]) == list(expected[pigment])
+    assert list(summary["least_change"]) == list(expected["least_change"])
+    least = summary["least_change"]["face"], expected["least_change"]["face"]
+    assert least[0] == pytest.approx(least[1], rel=0.15)
+    found, wanted = summary["melanin_constancy"], expected["melanin_constancy"]
+    assert set(found) == set(wanted) and len(found["looks"]) == len(wanted["looks"])
+    assert found["spread"] == pytest.approx(wanted["spread"], abs=0.01)
     row = summary["series"][-1]
     assert set(row) == {"frame", "time", "shot", "state", "gain", "regions"}
     assert list(row["regions"]) == list(NAMES)

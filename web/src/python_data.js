@@ -26,7 +26,9 @@ export const SENTENCES = {
   noSkinInVideo: "No skin was found in the face of the video; give a video that shows it uncovered.",
   compressed: "{name} has only {bits} bits a pixel: such compression leaves wrong colours for seconds, and hides the pulse. Intervals are wider; record with less compression.",
   shotRefused: "The shot from {start} s is not read: {refusal}",
-  unclear: "In single frames, changes of blood below about {value} % cannot be told from none in this face: its skin is dark, its light changes, or the video is compressed strongly.",
+  unclear: "In single frames, changes of blood below about {percent} % cannot be told from none in this face: {why}",
+  unreadable: "Changes of blood cannot be read in this face: in single frames, only those above about {percent} % can be told from none. {value}{value}",
+  whyUnclear: "its skin is dark, its light changes, or the video is compressed strongly.",
   disclaimer: "This is no medical device: it must not be used to diagnose, treat or monitor. It measures colour, not health.",
   grey: "it is grey",
 };
@@ -249,6 +251,7 @@ export const TRACKER = {
   LOOKS: 5,
   FACTOR: 1.645,
   MUCH: 0.12,
+  UNREADABLE: 0.5,
 };
 
 export const STILL = {

@@ -1,7 +1,7 @@
 /** The smallest change that a single frame tells from none (`tracker.py`). */
 
 import { REGIONS, SENTENCES, TRACKER } from "../python_data.js";
-import { fill } from "../sentences.js";
+import { capitalise, fill } from "../sentences.js";
 
 /** Relative changes by the names of the regions; null where a region is hidden. */
 export function findLeastChange(readings) {
@@ -18,5 +18,8 @@ export function findLeastChange(readings) {
 export function noteLeastChange(least) {
   const face = least[REGIONS.FACE];
   if (face === null || face <= TRACKER.MUCH) return [];
-  return [fill(SENTENCES.unclear, { value: Math.round(100 * face) })];
+  const [percent, why] = [Math.round(100 * face), SENTENCES.whyUnclear];
+  if (face <= TRACKER.UNREADABLE) return [fill(SENTENCES.unclear, { percent, why })];
+  const unreadable = SENTENCES.unreadable.replace("{value}{value}", capitalise(why));
+  return [fill(unreadable, { percent })];
 }
