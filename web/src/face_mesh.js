@@ -38,7 +38,8 @@ const REFINED = {
 /** Landmarks [x, y] in the photograph, and the log odds of a face, in a square around a head. */
 export async function findLandmarks(networks, photo, square) {
   const cut = cutSquare(square, photo, SIZE);
-  const input = Float32Array.from(cut.data, (level) => level / 255);
+  const input = new Float32Array(cut.data.length); // filled by a loop, which is quicker than `from`
+  for (let at = 0; at < input.length; at++) input[at] = cut.data[at] / 255;
   const outputs = await networks.run("face_mesh", { input_1: [input, [1, SIZE, SIZE, 3]] });
   const mesh = outputs.output_mesh_identity;
   const points = Array.from({ length: MESH_POINTS }, (_, at) => [mesh[3 * at], mesh[3 * at + 1]]);
