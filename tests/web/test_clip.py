@@ -45,6 +45,12 @@ class InPython(NamedTuple):
     track: Track
 
 
+@pytest.fixture(scope="module", autouse=True)
+def _require_library(server: PageServer) -> None:
+    if "/runtime/mediabunny.min.mjs" not in server.files:
+        pytest.skip("Mediabunny is not there: make runtime")
+
+
 @pytest.fixture(scope="module")
 def clip(tmp_path_factory: pytest.TempPathFactory) -> Path:
     """Three seconds of a synthetic face that flushes."""

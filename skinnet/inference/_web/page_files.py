@@ -15,12 +15,8 @@ _FACE_MODELS = _PACKAGE / "images" / "faces" / "models"
 _PLACES = Path(__file__).parent / "page", _PACKAGE.parent / "web"
 """Where the page is in a wheel, and in a checkout."""
 
-RUNTIME_FILES = (
-    "ort.wasm.bundle.min.mjs",
-    "ort-wasm-simd-threaded.wasm.gz",
-    "mediabunny.min.mjs",
-)
-"""Files of ONNX Runtime Web and Mediabunny in the page's folder `runtime`."""
+RUNTIME_FILES = "ort.wasm.bundle.min.mjs", "ort-wasm-simd-threaded.wasm.gz"
+"""Files of ONNX Runtime Web in the page's folder `runtime`."""
 
 _TYPES = {
     ".css": "text/css; charset=utf-8",
@@ -63,9 +59,9 @@ def list_files() -> dict[str, PageFile]:
     missing = [name for name in RUNTIME_FILES if f"/runtime/{name}" not in own]
     if missing:
         raise InputError(
-            f"The page lacks its libraries ({', '.join(missing)}). In a checkout, "
-            "`make runtime` fetches them, which needs npm; or install a skinnet wheel "
-            "that was built with them."
+            f"The page lacks ONNX Runtime Web ({', '.join(missing)}). In a checkout, "
+            "`make runtime` fetches it, which needs npm; or install a skinnet wheel "
+            "that was built with it."
         )
     paths = {"/": page / "index.html", **own, **_list_models(), **_list_samples()}
     return {address: PageFile(path, _TYPES[path.suffix]) for address, path in paths.items()}

@@ -25,7 +25,7 @@ export class ClipFrames {
           "the page from this computer or by HTTPS, or use the command skinnet track.",
       );
     }
-    const media = await import("../../runtime/mediabunny.min.mjs");
+    const media = await importMedia();
     const source = new media.BlobSource(blob);
     const input = new media.Input({ source, formats: media.ALL_FORMATS });
     try {
@@ -141,6 +141,18 @@ async function noteCompression(track, name) {
   const pixels = (await track.getCodedWidth()) * (await track.getCodedHeight());
   const bits = averageBitrate / averagePacketRate / pixels;
   return bits < FILES.LEAST_BITS ? [fill(SENTENCES.compressed, { name, bits: bits.toFixed(3) })] : [];
+}
+
+/** The library that takes files apart; it is only loaded for videos. */
+async function importMedia() {
+  try {
+    return await import("../../runtime/mediabunny.min.mjs");
+  } catch {
+    throw new Error(
+      "This page lacks Mediabunny, which opens videos. In a checkout, make runtime fetches it; or " +
+        "install skinnet anew, from a wheel.",
+    );
+  }
 }
 
 async function findTrack(input, name) {
