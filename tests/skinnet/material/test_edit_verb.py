@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 from skinnet.cli import main
 from skinnet.images.srgb import srgb_to_linear
 from skinnet.material import AlbedoColour
+from skinnet.material._brushes import parse_brush
 from skinnet.material._map_files import WHITES, to_pixels
 
 SIZE = 32
@@ -117,6 +118,39 @@ def test_brushes_change_places_of_one_pigment(texture: Path, brush: str, map_: i
     assert (edit(texture, "--brush", brush) == after).all()
     if not brush.startswith("tan"):
         assert (edit(texture, "--brush", f"{brush}{seed}seed=5") != after).any()
+
+
+@pytest.mark.parametrize("name", ["freckles", "moles"])
+def test_spots_have_no_rim(name: str) -> None:
+    axis = (np.arange(600) + 0.5) / 600
+    word = f"{name}:count=20000,size=0.002,radius=0.4"
+    painted = parse_brush(word).paint(axis, axis[::-1]) > 0
+    distance = np.hypot(axis - 0.5, axis[::-1, None] - 0.5) / 0.4
+    shares = [
+        painted[(distance >= low) & (distance < low + 0.1)].mean() for low in np.arange(0, 1, 0.1)
+    ]
+    assert np.all(np.diff(shares) < 0.02) and shares[-1] < 0.2 * shares[0]
+
+
+def test_patches_have_their_cover_and_soft_borders() -> None:
+    axis = (np.arange(1000) + 0.5) / 1000
+    brush = parse_brush("patches:cover=0.4,size=0.05,soft=0.02,radius=10")
+    painted = brush.paint(axis, axis[::-1])
+    assert (painted > 0.5).mean() == pytest.approx(0.4, abs=0.05)
+    down, across = np.gradient(painted, 1 / 1000)
+    border = np.hypot(down, across)[(painted > 0.3) & (painted < 0.7)]
+    assert 0.5 < 0.02 * np.median(border) < 2
+    melanin, hemoglobin = brush.compute_factors(axis, axis[::-1])
+    assert melanin.min() < 0.01 and hemoglobin.min() == pytest.approx(0.5, abs=0.01)
+
+
+def test_patches_shrink_towards_their_radius() -> None:
+    axis = (np.arange(400) + 0.5) / 400
+    painted = parse_brush("patches:radius=0.4,size=0.03").paint(axis, axis[::-1])
+    distance = np.hypot(axis - 0.5, axis[::-1, None] - 0.5) / 0.4
+    rim = painted[(distance > 0.96) & (distance < 1)]
+    assert painted[distance < 0.8].mean() > 0.2 and rim.mean() < 0.05
+    assert not painted[distance > 1].any()
 
 
 def test_a_brush_is_the_same_at_any_resolution(tmp_path: Path) -> None:
