@@ -12,7 +12,10 @@ from skinnet.errors import InputError
 from skinnet.inference._command.nearest import suggest
 
 _MAX_COUNT = 20_000
-_SLOPE = 3.0
+_NODES = 256
+"""Nodes of noise along each axis, after which it repeats."""
+
+_SLOPE = 2.7
 """Slope of the noise of patches, times their size."""
 
 _HALO, _FAINT = 3.0, 0.25
@@ -146,7 +149,7 @@ def _list_spots(values: dict[str, float], spread: float) -> Iterator[_Spot]:
         angle, distance = rng.uniform(0, 2 * np.pi), np.sqrt(1 - np.sqrt(rng.uniform()))
         reach = values["radius"] * distance
         radius = 0.5 * values["size"] * np.exp(spread * rng.normal())
-        waves, weight = rng.normal(size=(2, 3)) * [[0.12, 0.08, 0.05]], rng.uniform(0.5, 1)
+        waves, weight = rng.normal(size=(2, 3)) * [[0.08, 0.05, 0.03]], rng.uniform(0.5, 1)
         place = values["u"] + reach * np.cos(angle), values["v"] + reach * np.sin(angle)
         yield _Spot(*place, radius, weight, waves)
 
@@ -182,24 +185,30 @@ def _draw_spot(
 def _sample_noise(
     seed: float, size: float, u: np.ndarray, v: np.ndarray, octaves: int = 4
 ) -> Float32[np.ndarray, "rows columns"]:
-    """Smooth noise of mean 0 and deviation of about 1, with features of a size."""
+    """Smooth noise of mean 0 and deviation of about 1, with features of a size.
+
+    Cubic B-splines over random nodes show no direction of their grid.
+    """
     total = np.zeros((len(v), len(u)))
     for octave in range(octaves):
-        period = size / 2**octave
-        table = np.random.default_rng((int(seed), octave)).normal(size=(256, 256))
-        columns, rows = (_place(axis / period) for axis in (u, v))
-        corners = [[table[np.ix_(rows[j], columns[i])] for i in (0, 1)] for j in (0, 1)]
-        across, up = columns[2], rows[2][:, None]
-        low, high = (one + across * (other - one) for one, other in corners)
-        total += (low + up * (high - low)) * 0.55**octave
-    return np.asarray(total * 1.1, np.float32)
+        table = np.random.default_rng((int(seed), octave)).normal(size=(_NODES, _NODES))
+        columns, rows = (_weigh_nodes(axis * 2**octave / size) for axis in (u, v))
+        strips = sum(weight[:, None] * table[node] for node, weight in rows)
+        total += sum(weight * strips[:, node] for node, weight in columns) * 0.55**octave
+    return np.asarray(total * 1.75, np.float32)
 
 
-def _place(x: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """Numbers of the nodes before and after, and the smooth share of the latter."""
+def _weigh_nodes(x: np.ndarray) -> list[tuple[np.ndarray, np.ndarray]]:
+    """Numbers of the four nodes about each place, and their weights."""
     before = np.floor(x).astype(np.int64)
-    share = x - before
-    return before % 256, (before + 1) % 256, share * share * (3 - 2 * share)
+    t = x - before
+    weights = (
+        (1 - t) ** 3 / 6,
+        (3 * t**3 - 6 * t**2 + 4) / 6,
+        (-3 * t**3 + 3 * t**2 + 3 * t + 1) / 6,
+        t**3 / 6,
+    )
+    return [((before + k - 1) % _NODES, weight) for k, weight in enumerate(weights)]
 
 
 def _paint_freckles(
@@ -241,7 +250,7 @@ def _paint_patches(
     level = -ndtri(values["cover"])  # the share of a normal distribution above it is the cover
     border = _SLOPE * values["soft"] / values["size"]
     place = _fade(values, u, v)
-    height = noise - level - 4 * (1 - _step(8 * place))  # patches shrink towards the radius
+    height = noise - level - 4 * (1 - _step(2 * place))  # patches shrink towards the radius
     inner, outer = (_step(height / wide + 0.5) for wide in (border, _HALO * border))
     mixed = np.float32(1 - _FAINT) * inner + np.float32(_FAINT) * outer
     return np.asarray(mixed * (place > 0), np.float32)

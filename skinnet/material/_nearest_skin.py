@@ -20,7 +20,8 @@ _STEPS = 2
 _COLOURS_AT_A_TIME = 1 << 17
 """Colours that stay in the cache."""
 
-_TINY = 1e-30
+_TINY = 1e-25
+"""Keeps the products of parallel derivatives invertible."""
 
 
 class NearestSkin:
@@ -90,13 +91,15 @@ class NearestSkin:
         index = (node[0] * _NODES[1] + node[1]).int()
         values = self._tangents.index_select(0, index).T
         residual = rgb - values[:3]
-        by_mel, by_blood = ((residual * values[k : k + 3]).sum(0) for k in (3, 6))
-        aa, ab, bb, inverse = values[9:]
-        # The steps of `clipped_newton_step` in physics, for tables of products.
-        mel = (node[0] + (bb * by_mel - ab * by_blood) * inverse).clamp_(0, _NODES[0] - 1)
-        blood = (node[1] + (by_blood - ab * (mel - node[0])) / bb).clamp_(0, _NODES[1] - 1)
-        mel = (node[0] + (by_mel - ab * (blood - node[1])) / aa).clamp_(0, _NODES[0] - 1)
-        return torch.stack([mel, blood])
+        mel, blood = (
+            (residual * values[k : k + 3]).sum(0).add_(place)
+            for k, place in zip((3, 6), node, strict=True)
+        )
+        # As `clipped_newton_step` in physics: at a border the best place along it is another one.
+        clipped = mel.clamp(0, _NODES[0] - 1)
+        inner = torch.addcmul(blood, mel - clipped, values[9]).clamp_(0, _NODES[1] - 1)
+        mel = torch.addcmul(mel, blood - inner, values[10]).clamp_(0, _NODES[0] - 1)
+        return torch.stack([mel, inner])
 
     def _tabulate_starts(self, inverse: SkinInverse) -> Float[Tensor, "1 2 side side side"]:
         """Positions of the nearest skins, over square roots of linear RGB."""
@@ -109,17 +112,17 @@ class NearestSkin:
         return torch.stack(positions)[None].float()
 
 
-def _tabulate_tangents(colours: Float[Tensor, "mel blood 3"]) -> Float[Tensor, "nodes 13"]:
-    """Colours, their derivatives by both positions, and products of these, a node a row."""
+def _tabulate_tangents(colours: Float[Tensor, "mel blood 3"]) -> Float[Tensor, "nodes 11"]:
+    """Tabulate the planes that touch the surface of colours, a node a row.
+
+    Returns:
+        The colour; what takes a difference of colours to steps of melanin and of blood; how far
+        blood goes for each step that melanin does not, and melanin for blood.
+    """
     values = colours.numpy()
-    by_mel, by_blood = np.gradient(values, axis=(0, 1), edge_order=2)
-    aa, ab, bb = (
-        (one * other).sum(-1, keepdims=True) + tiny
-        for one, other, tiny in (
-            (by_mel, by_mel, _TINY),
-            (by_mel, by_blood, 0),
-            (by_blood, by_blood, _TINY),
-        )
-    )
-    planes = [values, by_mel, by_blood, aa, ab, bb, 1 / (aa * bb - ab**2 + _TINY)]
-    return torch.from_numpy(np.concatenate(planes, -1)).float().flatten(0, 1).contiguous()
+    derivatives = np.stack(np.gradient(values, axis=(0, 1), edge_order=2), -2)
+    products = derivatives @ derivatives.swapaxes(-1, -2) + _TINY * np.eye(2)
+    steps = np.linalg.solve(products, derivatives)
+    shares = products[..., :1, 1] / np.diagonal(products, axis1=-2, axis2=-1)[..., ::-1]
+    rows = np.concatenate([values, steps[..., 0, :], steps[..., 1, :], shares], -1)
+    return torch.from_numpy(rows).float().flatten(0, 1).contiguous()

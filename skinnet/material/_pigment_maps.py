@@ -20,6 +20,9 @@ which it is not. Between them an edit fades, so that no border of skin shows."""
 _SOON = 4.0
 """Even a colour that is a quarter skin's gets the exact fractions."""
 
+_ROWS = (0, 1, 4, 6)
+"""Rows of the posterior: the mean of f_mel, both standard deviations, and the distance."""
+
 _MOST_MELANIN = 0.5
 
 
@@ -46,7 +49,7 @@ class PigmentMaps:
         """Find f_mel, f_blood, their standard deviations, and the weight of skin."""
         finite = np.nan_to_num(linear, nan=0.0, posinf=10.0, neginf=-1.0)
         rgb = torch.from_numpy(finite).clamp(-1, 10)
-        mean, mel_sd, _, _, blood_sd, _, distance = self._posterior(rgb)
+        mean, mel_sd, blood_sd, distance = self._posterior(rgb)
         skin = ((_HARDLY - distance) / (_HARDLY - _SURELY)).clamp(0, 1)
         skin = torch.where(mean <= _MOST_MELANIN, skin, 0.0)
         mel, blood = self._nearest(rgb, (_SOON * skin).clamp(0, 1))
@@ -68,4 +71,4 @@ def _tabulate(colour: SkinColour) -> tuple[PosteriorTable, NearestSkin]:
     matrix = torch.from_numpy(colour.matrix @ colour.calibration.T)
     exact = SkinReflectance(colour.optics, dtype=torch.float64)
     table = ColourPosteriors(exact, matrix).tabulate(_NOISE, _WHITE_BALANCE, None)
-    return table, NearestSkin(colour.lookup, matrix)
+    return table.select(_ROWS), NearestSkin(colour.lookup, matrix)
