@@ -21,14 +21,22 @@ _SLOPE = 2.7
 _HALO, _FAINT = 3.0, 0.25
 """Width of the outer border of patches over that of the inner, and its share of their strength."""
 
+_PLACE = {"u": 0.5, "v": 0.5}
+_DISC = {**_PLACE, "radius": 0.75, "seed": 0.0}
 _USUAL: dict[str, dict[str, float]] = {
-    "freckles": {"count": 400, "size": 0.004, "strength": 1.7},
-    "moles": {"count": 6, "size": 0.007, "strength": 4.0},
-    "flush": {"strength": 1.8, "radius": 0.1},
-    "tan-line": {"width": 0.05, "angle": 0.0, "strength": 1.6, "soft": 0.004},
-    "patches": {"cover": 0.3, "size": 0.15, "strength": 0.0, "hemoglobin": 0.5, "soft": 0.03},
+    "freckles": {**_DISC, "count": 400, "size": 0.004, "strength": 1.7},
+    "moles": {**_DISC, "count": 6, "size": 0.007, "strength": 4.0},
+    "flush": {**_DISC, "strength": 1.8, "radius": 0.1},
+    "tan-line": {**_PLACE, "width": 0.05, "angle": 0.0, "strength": 1.6, "soft": 0.004},
+    "patches": {
+        **_DISC,
+        "cover": 0.3,
+        "size": 0.15,
+        "strength": 0.0,
+        "hemoglobin": 0.5,
+        "soft": 0.03,
+    },
 }
-_PLACE = {"u": 0.5, "v": 0.5, "radius": 0.75, "seed": 0.0}
 _LIMITS = {
     "count": (1, _MAX_COUNT),
     "size": (1e-5, 1),
@@ -94,7 +102,7 @@ def parse_brush(word: str) -> Brush:
     if name not in _USUAL:
         known = ", ".join(BRUSHES)
         raise InputError(f"There is no brush {name!r}; known are {known}.{suggest(name, BRUSHES)}")
-    values = {**_PLACE, **_USUAL[name]}
+    values = dict(_USUAL[name])
     for part in filter(None, rest.split(",")):
         key, equals, text = part.partition("=")
         if key not in values or not equals:

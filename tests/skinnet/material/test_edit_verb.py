@@ -246,6 +246,7 @@ def test_a_full_calibration_undoes_a_transform(tmp_path: Path, capsys) -> None:
     words = ["--calibration", "full", "--json", "-o", str(tmp_path)]
     assert main(["-q", "invert", str(tmp_path / "a.tif"), *words]) == 0
     assert json.loads(capsys.readouterr().out)["skin_share"] > 0.95
+    words[1] = str(tmp_path / "a_maps.json")
     assert main(["-q", "edit-albedo", str(tmp_path / "a.tif"), "--melanin", "1.5", *words]) == 0
     before, after = (read_pixels(tmp_path / name) for name in ("a.tif", "a_edited.tif"))
     assert (after < before).mean() > 0.95
@@ -281,6 +282,7 @@ def test_baked_highlights_are_said(tmp_path: Path, capsys) -> None:
         (("--brush", "frekles"), "Did you mean freckles?"),
         (("--brush", "moles:count=0"), "count of the brush moles is 1 to 20000; got 0"),
         (("--brush", "moles:number=3"), "The brush moles takes"),
+        (("--brush", "tan-line:radius=0.2"), "The brush tan-line takes u, v, width"),
         (("--light", "candle"), "no light 'candle'"),
         (("--calibration", "some"), "--calibration is none, exposure, full"),
     ],
