@@ -48,7 +48,8 @@ class PosteriorTable:
         self._axes = _find_principal_axes(logarithms, nodes.log_prior)
         shells = logarithms @ self._axes
         self._low, self._high = _widen(shells.amin((0, 1)), shells.amax((0, 1)))
-        self._table, self._logarithms = self._tabulate(nodes, shells), _LOGARITHMS
+        self._table = self._tabulate(nodes, shells)
+        self._logarithms: tuple[int, ...] = _LOGARITHMS
 
     def select(self, rows: Sequence[int]) -> "PosteriorTable":
         """Make a table that gives only some rows, in a share of the time."""
