@@ -1,7 +1,8 @@
 """Pictures of a blushing face in Blender, for docs/artists.md.
 
 python -m examples.blushing writes the maps of three synthetic skins and a procedural head, runs
-`skinnet shader`, and renders the head by Cycles in the environment that `make blender` makes.
+`skinnet shader`, and renders the head by Cycles in the environment that `make blender` makes. The
+sheet is blushing.png in the folder, runs/blushing by default.
 """
 
 import json
@@ -12,11 +13,12 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 from PIL import Image
-from scipy.ndimage import gaussian_filter
+from scipy.ndimage import gaussian_filter, gaussian_filter1d
 
 from skinnet.cli import main as run_skinnet
 from skinnet.images._png_file import write_png
 from skinnet.mesh import write_mesh
+from skinnet.mesh._topology import list_boundary_loops
 from skinnet.mesh.mesh import Mesh
 from skinnet.shape import load_shape_model
 
@@ -25,6 +27,10 @@ _TONES = {"light": (0.03, 0.05), "medium": (0.085, 0.05), "dark": (0.26, 0.05)}
 """Volume fractions of melanin and of blood."""
 
 _SIDE, _LEVELS = 1024, 65535
+_VIEWS = ("rest", "blushing", "near")
+_RIM = 4.0
+"""Vertices over which the rim of the head is smoothed."""
+
 _CHEEKS = ((0.36, 0.41), (0.64, 0.41))
 
 
@@ -32,7 +38,8 @@ def main(folder: Path) -> int:
     """Write maps and head, and render them."""
     folder.mkdir(parents=True, exist_ok=True)
     model = load_shape_model()
-    mesh = Mesh(model.mean, model.triangles, model.uv, model.uv_triangles, None, "face")
+    vertices = _smooth_rim(model.mean, model.triangles)
+    mesh = Mesh(vertices, model.triangles, model.uv, model.uv_triangles, None, "face")
     write_mesh(folder / "face.obj", mesh)
     places = {name: model.uv[model.landmarks[name]] for name in model.landmarks}
     mask = _draw_flush(places)
@@ -46,7 +53,30 @@ def main(folder: Path) -> int:
     script = Path(__file__).parent / "in_blender" / "blushing_scene.py"
     blender = _ROOT / ".venv-blender" / "bin" / "python"
     subprocess.run([blender, script, folder, json.dumps([*_TONES])], check=True)
+    _compose(folder)
     return 0
+
+
+def _smooth_rim(vertices: NDArray[np.float64], triangles: NDArray[np.int64]) -> NDArray[np.float64]:
+    """Smooth the outer rim, which goes up and down the quads of the model."""
+    rim = max(list_boundary_loops(triangles), key=len)
+    smooth = vertices.copy()
+    smooth[rim] = gaussian_filter1d(vertices[rim], _RIM, axis=0, mode="wrap")
+    return smooth
+
+
+def _compose(folder: Path) -> None:
+    """Put the renders of all skins together, a skin a row."""
+    rows = [
+        np.concatenate([_read(folder / f"{tone}_{name}.png") for name in _VIEWS], 1)
+        for tone in _TONES
+    ]
+    Image.fromarray(np.concatenate(rows)).save(folder / "blushing.png", optimize=True)
+
+
+def _read(path: Path) -> NDArray[np.uint8]:
+    with Image.open(path) as picture:
+        return np.asarray(picture.convert("RGB"))
 
 
 def _draw_flush(places: dict[str, NDArray[np.float64]]) -> NDArray[np.float64]:

@@ -12,7 +12,7 @@ import bpy
 _FLUSHES = {"rest": 0.0, "blushing": 1.5}
 
 
-def main(folder: Path, tones: list[str], size: int = 280, samples: int = 10) -> None:
+def main(folder: Path, tones: list[str], size: int = 280, samples: int = 32) -> None:
     """Render each face at rest and blushing, and both cheeks near."""
     for tone in tones:
         bpy.ops.wm.read_factory_settings(use_empty=True)

@@ -20,11 +20,15 @@ _DARKEST = 0.02
 _MEANING = "White is edited fully, grey partly, and black is left"
 
 
-def read_edit_mask(path: Path) -> NDArray[Any]:
+def read_edit_mask(path: Path, may_be_black: bool = False) -> NDArray[Any]:
     """Read a mask from a picture file, turned upright as its EXIF states.
 
     Its stored values are shares of its white, whatever its colour space. Transparent parts count
     as black.
+
+    Args:
+        path: The file.
+        may_be_black: Whether it is one of several, so that it may be black everywhere.
 
     Returns:
         uint8 or uint16 [H, W].
@@ -36,10 +40,16 @@ def read_edit_mask(path: Path) -> NDArray[Any]:
         raise InputError("--mask takes a file, since standard input is for the photograph; got - .")
     picture = read_picture(path)
     values = _to_grey(_hide_transparent(picture), str(path))
-    if not values.any():
-        raise InputError(f"{path} is black everywhere, so nothing would be edited. {_MEANING}.")
-    _refuse_labels(values, str(path))
+    if values.any():
+        _refuse_labels(values, str(path))
+    elif not may_be_black:
+        raise describe_black(path)
     return values
+
+
+def describe_black(path: Path) -> InputError:
+    """Make the error for a mask, or for all tiles of one, that is black."""
+    return InputError(f"{path} is black everywhere, so nothing would be edited. {_MEANING}.")
 
 
 def check_edit_mask(

@@ -12,19 +12,36 @@ from skinnet.errors import InputError
 from skinnet.inference._command.nearest import suggest
 
 _MAX_COUNT = 20_000
+_NODES = 256
+"""Nodes of noise along each axis, after which it repeats."""
 
+_SLOPE = 2.7
+"""Slope of the noise of patches, times their size."""
+
+_HALO, _FAINT = 3.0, 0.25
+"""Width of the outer border of patches over that of the inner, and its share of their strength."""
+
+_PLACE = {"u": 0.5, "v": 0.5}
+_DISC = {**_PLACE, "radius": 0.75, "seed": 0.0}
 _USUAL: dict[str, dict[str, float]] = {
-    "freckles": {"count": 400, "size": 0.004, "strength": 1.7},
-    "moles": {"count": 6, "size": 0.007, "strength": 4.0},
-    "flush": {"strength": 1.8, "radius": 0.1},
-    "tan-line": {"width": 0.05, "angle": 0.0, "strength": 1.6, "soft": 0.004},
-    "patches": {"cover": 0.3, "size": 0.12, "strength": 0.0, "soft": 0.02},
+    "freckles": {**_DISC, "count": 400, "size": 0.004, "strength": 1.7},
+    "moles": {**_DISC, "count": 6, "size": 0.007, "strength": 4.0},
+    "flush": {**_DISC, "strength": 1.8, "radius": 0.1},
+    "tan-line": {**_PLACE, "width": 0.05, "angle": 0.0, "strength": 1.6, "soft": 0.004},
+    "patches": {
+        **_DISC,
+        "cover": 0.3,
+        "size": 0.15,
+        "strength": 0.0,
+        "hemoglobin": 0.5,
+        "soft": 0.03,
+    },
 }
-_PLACE = {"u": 0.5, "v": 0.5, "radius": 0.75, "seed": 0.0}
 _LIMITS = {
     "count": (1, _MAX_COUNT),
     "size": (1e-5, 1),
     "strength": (0, 10),
+    "hemoglobin": (0, 10),
     "radius": (1e-4, 10),
     "width": (1e-4, 1),
     "angle": (-360, 360),
@@ -69,9 +86,10 @@ class Brush:
         self, u: Float[np.ndarray, "columns"], v: Float[np.ndarray, "rows"]
     ) -> Factors:
         """Compute the factors of melanin and hemoglobin."""
-        factor = 1 + (np.float32(self.values["strength"]) - 1) * self.paint(u, v)
-        plain = np.ones_like(factor)
-        return Factors(plain, factor) if self.name == "flush" else Factors(factor, plain)
+        painted = self.paint(u, v)
+        factor = _mix(self.values["strength"], painted)
+        other = _mix(self.values.get("hemoglobin", 1.0), painted)
+        return Factors(other, factor) if self.name == "flush" else Factors(factor, other)
 
 
 def parse_brush(word: str) -> Brush:
@@ -84,7 +102,7 @@ def parse_brush(word: str) -> Brush:
     if name not in _USUAL:
         known = ", ".join(BRUSHES)
         raise InputError(f"There is no brush {name!r}; known are {known}.{suggest(name, BRUSHES)}")
-    values = {**_PLACE, **_USUAL[name]}
+    values = dict(_USUAL[name])
     for part in filter(None, rest.split(",")):
         key, equals, text = part.partition("=")
         if key not in values or not equals:
@@ -105,6 +123,11 @@ def _read_number(name: str, key: str, text: str) -> float:
     if not low <= value <= high:
         raise InputError(f"{key} of the brush {name} is {low:g} to {high:g}; got {text}.")
     return value
+
+
+def _mix(factor: float, share: Float32[np.ndarray, "r c"]) -> Float32[np.ndarray, "r c"]:
+    """Mix a factor with 1 by its root: a colour is nearly linear in the root of a fraction."""
+    return (1 + np.float32(np.sqrt(factor) - 1) * share) ** 2
 
 
 def _fade(values: dict[str, float], u: np.ndarray, v: np.ndarray) -> Float32[np.ndarray, "r c"]:
@@ -128,13 +151,13 @@ class _Spot(NamedTuple):
 
 
 def _list_spots(values: dict[str, float], spread: float) -> Iterator[_Spot]:
-    """Spots at random places, denser towards the centre; each has a seed of its own."""
+    """Spots at random places, whose density falls evenly from the centre to 0 at the radius."""
     rng = np.random.default_rng(int(values["seed"]))
     for _ in range(int(values["count"])):
-        angle, distance = rng.uniform(0, 2 * np.pi), np.sqrt(rng.uniform())
+        angle, distance = rng.uniform(0, 2 * np.pi), np.sqrt(1 - np.sqrt(rng.uniform()))
         reach = values["radius"] * distance
         radius = 0.5 * values["size"] * np.exp(spread * rng.normal())
-        waves, weight = rng.normal(size=(2, 3)) * [[0.12, 0.08, 0.05]], rng.uniform(0.5, 1)
+        waves, weight = rng.normal(size=(2, 3)) * [[0.08, 0.05, 0.03]], rng.uniform(0.5, 1)
         place = values["u"] + reach * np.cos(angle), values["v"] + reach * np.sin(angle)
         yield _Spot(*place, radius, weight, waves)
 
@@ -168,32 +191,38 @@ def _draw_spot(
 
 
 def _sample_noise(
-    seed: float, size: float, u: np.ndarray, v: np.ndarray
+    seed: float, size: float, u: np.ndarray, v: np.ndarray, octaves: int = 4
 ) -> Float32[np.ndarray, "rows columns"]:
-    """Smooth noise of mean 0 and deviation of about 1, with features of a size."""
+    """Smooth noise of mean 0 and deviation of about 1, with features of a size.
+
+    Cubic B-splines over random nodes show no direction of their grid.
+    """
     total = np.zeros((len(v), len(u)))
-    for octave in range(4):
-        period = size / 2**octave
-        table = np.random.default_rng((int(seed), octave)).normal(size=(256, 256))
-        columns, rows = (_place(axis / period) for axis in (u, v))
-        corners = [[table[np.ix_(rows[j], columns[i])] for i in (0, 1)] for j in (0, 1)]
-        across, up = columns[2], rows[2][:, None]
-        low, high = (one + across * (other - one) for one, other in corners)
-        total += (low + up * (high - low)) * 0.55**octave
-    return np.asarray(total * 1.1, np.float32)
+    for octave in range(octaves):
+        table = np.random.default_rng((int(seed), octave)).normal(size=(_NODES, _NODES))
+        columns, rows = (_weigh_nodes(axis * 2**octave / size) for axis in (u, v))
+        strips = sum(weight[:, None] * table[node] for node, weight in rows)
+        total += sum(weight * strips[:, node] for node, weight in columns) * 0.55**octave
+    return np.asarray(total * 1.75, np.float32)
 
 
-def _place(x: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """Numbers of the nodes before and after, and the smooth share of the latter."""
+def _weigh_nodes(x: np.ndarray) -> list[tuple[np.ndarray, np.ndarray]]:
+    """Numbers of the four nodes about each place, and their weights."""
     before = np.floor(x).astype(np.int64)
-    share = x - before
-    return before % 256, (before + 1) % 256, share * share * (3 - 2 * share)
+    t = x - before
+    weights = (
+        (1 - t) ** 3 / 6,
+        (3 * t**3 - 6 * t**2 + 4) / 6,
+        (-3 * t**3 + 3 * t**2 + 3 * t + 1) / 6,
+        t**3 / 6,
+    )
+    return [((before + k - 1) % _NODES, weight) for k, weight in enumerate(weights)]
 
 
 def _paint_freckles(
     values: dict[str, float], u: np.ndarray, v: np.ndarray
 ) -> Float32[np.ndarray, "rows columns"]:
-    return np.asarray(_paint_spots(values, u, v, 0.35, 1.2) * _step(3 * _fade(values, u, v)))
+    return _paint_spots(values, u, v, 0.35, 1.2)
 
 
 def _paint_moles(
@@ -221,10 +250,18 @@ def _paint_tan_line(
 def _paint_patches(
     values: dict[str, float], u: np.ndarray, v: np.ndarray
 ) -> Float32[np.ndarray, "rows columns"]:
-    noise = _sample_noise(values["seed"], values["size"], u, v)
+    """Patches with a border of the width `soft`, within a wider one where skin is a little lighter.
+
+    The wider border is that of Brazzelli et al. 2008, The perilesional skin in vitiligo.
+    """
+    noise = _sample_noise(values["seed"], values["size"], u, v, octaves=3)
     level = -ndtri(values["cover"])  # the share of a normal distribution above it is the cover
-    wide = 10 * values["soft"]
-    return _step((noise - level) / wide + 0.5) * (_fade(values, u, v) > 0)
+    border = _SLOPE * values["soft"] / values["size"]
+    place = _fade(values, u, v)
+    height = noise - level - 4 * (1 - _step(2 * place))  # patches shrink towards the radius
+    inner, outer = (_step(height / wide + 0.5) for wide in (border, _HALO * border))
+    mixed = np.float32(1 - _FAINT) * inner + np.float32(_FAINT) * outer
+    return np.asarray(mixed * (place > 0), np.float32)
 
 
 _PAINTERS: dict[

@@ -17,7 +17,7 @@ from skinnet.errors import InputError
 from skinnet.files import make_folder, write_together
 from skinnet.images._mark import Mark
 from skinnet.images._result_names import choose_stem, lock_folder
-from skinnet.inference._edit_mask import read_edit_mask
+from skinnet.inference._edit_mask import describe_black, read_edit_mask
 from skinnet.inference._editing import to_share
 from skinnet.inference._messages import note, print_line
 from skinnet.material._brushes import Brush, parse_brush
@@ -67,6 +67,7 @@ class _Edit(NamedTuple):
     paints: dict[str, Path]
     brushes: list[Brush]
     mask: Path | None
+    is_named: bool
 
     @property
     def changes_nothing(self) -> bool:
@@ -76,16 +77,24 @@ class _Edit(NamedTuple):
 
 def edit(options: argparse.Namespace) -> None:
     """Write NAME_edited beside a texture, of its own type, bits and profile."""
-    wanted = _read_edit(options)
+    wanted, from_maps = _read_edit(options), options.texture.suffix.lower() == ".json"
+    if not wanted.is_named and not from_maps:
+        raise InputError(
+            f"No edit of {options.texture} is named; give a factor, such as --melanin 1.5, a "
+            "--preset or a --brush."
+        )
     with ExitStack() as stack:
-        if options.texture.suffix.lower() == ".json":
+        if from_maps:
             tiles, colour, digest, stem, folder = _open_maps(options, stack)
         else:
             tiles, colour, digest, stem, folder = _open_texture(options, stack)
         folder = make_folder(options.output or folder, "choose another folder with -o")
         stack.enter_context(lock_folder(folder))
         ends = [_name_end(one) for one in tiles]
-        stem = choose_stem(folder, f"{stem}_edited", ends, lambda file: owns(file, digest))
+        # Without an edit the maps give the texture again, which replaces no edit.
+        stem = choose_stem(
+            folder, f"{stem}_edited", ends, lambda file: wanted.is_named and owns(file, digest)
+        )
         files = [folder / (stem + end) for end in ends]
         _write(tiles, files, colour, wanted, digest)
     if wanted.changes_nothing:
@@ -101,12 +110,16 @@ def _read_edit(options: argparse.Namespace) -> _Edit:
         value = _read_value(word)
         if word is not None and value is None:
             paints[name] = Path(word)
-        factor = getattr(options, name) * (getattr(preset, name) if preset else 1.0)
+        given = getattr(options, name)
+        factor = (1.0 if given is None else given) * (getattr(preset, name) if preset else 1.0)
         edits[name] = PigmentEdit(factor, getattr(options, f"{name}_add"), value)
     brushes = [parse_brush(word) for word in options.brush]
     if preset and preset.brush:
         brushes.append(_adapt(parse_brush(preset.brush), options))
-    return _Edit(edits, paints, brushes, options.mask)
+    given = [getattr(options, name) for name in _PIGMENTS]
+    is_named = any(one is not None for one in given) or bool(paints or brushes or preset)
+    is_named |= any(edit != PigmentEdit() for edit in edits.values())
+    return _Edit(edits, paints, brushes, options.mask, is_named)
 
 
 def _adapt(brush: Brush, options: argparse.Namespace) -> Brush:
@@ -227,9 +240,14 @@ def _write(
 ) -> None:
     texels = sum(one.texture.spec.width * one.texture.spec.height for one in tiles)
     notes: list[str] = []
+    is_black = wanted.mask is not None
     with write_together() as temporary, show_rows(texels) as advance:
         for tile, file in zip(tiles, files, strict=True):
-            notes += _write_tile(tile, temporary(file), colour, wanted, digest, advance)
+            mask = _read_mask(wanted.mask, tile)
+            is_black &= mask is not None and not mask.any()
+            notes += _write_tile(tile, temporary(file), colour, wanted, mask, digest, advance)
+        if is_black and wanted.mask is not None:
+            raise describe_black(wanted.mask)
     for sentence in notes:
         note(sentence)
 
@@ -239,11 +257,11 @@ def _write_tile(
     part: Path,
     colour: AlbedoColour,
     wanted: _Edit,
+    mask: NDArray[Any] | None,
     digest: str,
     advance: Callable[[int], None],
 ) -> list[str]:
     texture, counts = tile.texture, TextureCounts()
-    mask = _read_mask(wanted.mask, tile)
     paints = {name: _read_paint(path, name, tile) for name, path in wanted.paints.items()}
     spec = describe_copy(texture, str(Mark("edit-albedo", "edited", digest)))
     spec.set_format(tile.encoding.type)
@@ -330,7 +348,7 @@ def _read_mask(path: Path | None, tile: _Tile) -> NDArray[Any] | None:
     if path is None:
         return None
     named = _find_tile(path, tile)
-    mask = read_edit_mask(named)
+    mask = read_edit_mask(named, may_be_black=tile.tile is not None)
     _check_size(named, mask.shape, tile.texture)
     return mask
 

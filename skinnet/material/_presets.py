@@ -34,9 +34,10 @@ PRESETS = {
     "vitiligo": AlbedoPreset(
         1.0,
         1.0,
-        "patches",
-        "no melanin in patches, as melanocytes are lost there; places and cover are our choice, so "
-        "paint a mask, or give --brush patches:... instead",
+        "patches:radius=10",
+        "no melanin in patches, as melanocytes are lost there, and a lighter border: Brazzelli et "
+        "al. 2008, The perilesional skin in vitiligo; hemoglobin x .5 for their chalk-white, "
+        "places and cover are our choice, so paint a mask, or give --brush patches:... instead",
     ),
 }
 """The edits by name."""

@@ -5,6 +5,7 @@ from jaxtyping import Float32, Shaped
 
 from skinnet.errors import InputError
 from skinnet.material.albedo import AlbedoMaps
+from skinnet.physics.inversion import F_BLOOD_RANGE
 
 _STEP = 7
 """Every seventh texel of a strip is looked at."""
@@ -12,7 +13,8 @@ _STEP = 7
 _WHITER = 0.05
 """Linear RGB by which a highlight is brighter than skin in all channels."""
 
-_SOME, _MOST, _ALMOST_ALL = 0.002, 0.5, 0.97
+_SOME, _MUCH, _MOST, _ALMOST_ALL = 0.002, 0.25, 0.5, 0.97
+_LEAST_BLOOD, _MOST_BLOOD = 1e-5, 0.999 * F_BLOOD_RANGE[1]
 _BLACK = 1e-3
 
 
@@ -36,7 +38,9 @@ class TextureCounts:
         grey = np.ptp(colours, axis=-1) < 1e-6
         whiter = maps.offset[::_STEP].min(-1) > _WHITER
         skin = maps.skin[::_STEP] > 0
-        flags = (np.ones_like(place), normal, grey, whiter, skin, maps.f_mel[::_STEP] > 0.4)
+        blood = maps.f_blood[::_STEP]
+        bound = skin & ((blood < _LEAST_BLOOD) | (blood > _MOST_BLOOD))
+        flags = (np.ones_like(place), normal, grey, whiter, skin, bound)
         self._counts += [(flag & place).sum() for flag in flags]
 
     def check(self, name: str) -> list[str]:
@@ -50,7 +54,7 @@ class TextureCounts:
         """
         if not self._counts[0]:
             raise InputError(f"{name} is black or transparent everywhere; give the albedo.")
-        normal, grey, whiter, skin, _ = self._counts[1:] / self._counts[0]
+        normal, grey, whiter, skin, bound = self._counts[1:] / self._counts[0]
         if grey > _ALMOST_ALL:
             raise InputError(
                 f"{name} is grey, as roughness, height and masks are; give the texture of the "
@@ -61,7 +65,8 @@ class TextureCounts:
                 f"{name} looks like a normal map: its colours are directions; give the texture of "
                 "the colour (albedo, base colour or diffuse)."
             )
-        return [*self._describe_skin(name, skin), *self._describe_highlights(name, whiter)]
+        said = [*self._describe_skin(name, skin), *self._describe_highlights(name, whiter)]
+        return [*said, *self._describe_bound(name, bound, skin)]
 
     @staticmethod
     def _describe_skin(name: str, skin: float) -> list[str]:
@@ -81,4 +86,15 @@ class TextureCounts:
             f"{name}: {whiter:.1%} of the texels are brighter and whiter than skin. If these are "
             "highlights or light that is baked in, they stay in the offset, and in an edit; paint "
             "them out for an even result."
+        ]
+
+    @staticmethod
+    def _describe_bound(name: str, bound: float, skin: float) -> list[str]:
+        if bound <= _MUCH * skin:
+            return []
+        return [
+            f"{name}: {bound / skin:.0%} of the skin has the least or the most hemoglobin that is "
+            f"looked for (0 or {F_BLOOD_RANGE[1]:g}): its colours are yellower or redder than skin "
+            "under this light and camera, and a factor cannot change 0. Name the light and the "
+            "camera, or fit them: --calibration exposure, or full."
         ]

@@ -60,7 +60,7 @@ def _add_edit(verb: argparse.ArgumentParser) -> None:
     group = verb.add_argument_group("the edit")
     for name, most in (("melanin", 0.5), ("hemoglobin", 0.25)):
         group.add_argument(
-            f"--{name}", type=float, default=1.0, metavar="X", help="factor, 0 to 10"
+            f"--{name}", type=float, metavar="X", help="factor, 0 to 10; 1 by default"
         )
         group.add_argument(
             f"--{name}-add",

@@ -10,7 +10,7 @@ from skinnet.appearance._offset_factor import compute_offset_factor
 from skinnet.appearance.colour import SkinColour
 from skinnet.appearance.edit import PigmentEdit
 from skinnet.errors import InputError
-from skinnet.material._posterior_maps import PosteriorMaps
+from skinnet.material._pigment_maps import PigmentMaps
 from skinnet.physics.sources import load_spectrum_to_srgb
 
 
@@ -18,9 +18,10 @@ class AlbedoMaps(NamedTuple):
     """Pigments of an albedo, and what they leave unexplained.
 
     Attributes:
-        f_mel: Volume fraction of melanosomes: the median of the posterior.
-        f_blood: Volume fraction of blood, likewise.
-        f_mel_sd: Standard deviation of f_mel in the posterior; 0 where the colour is no skin's.
+        f_mel: Volume fraction of melanosomes, of the nearest colour of skin; 0 to .43.
+        f_blood: Volume fraction of blood, likewise; 0 to .15.
+        f_mel_sd: Standard deviation of f_mel over the skins of people that have the colour (the
+            posterior of `SkinInverse.posterior`); 0 where the colour is no skin's.
         f_blood_sd: The same of f_blood.
         skin: How far a colour is one that skin has, in [0, 1]; edits are weighed by it.
         offset: Linear RGB less that of the skin model.
@@ -57,8 +58,7 @@ class AlbedoColour:
         InputError: For a light, a camera or a transform that cannot be used.
 
     Source:
-        Sections 4.3, 4.4 and 6 of Alotaibi & Smith 2017; `SkinInverse.posterior` says what else
-        than the paper's nearest colour the pigments are.
+        Sections 4.3, 4.4 and 6 of Alotaibi & Smith 2017.
 
     Example:
         >>> import numpy as np
@@ -84,7 +84,7 @@ class AlbedoColour:
         ):
             raise InputError(f"A transform is 3 x 3 and has an inverse; got {transform}.")
         self.colour = SkinColour(matrix, transform, light=str(light), camera=str(camera))
-        self._posterior = PosteriorMaps(self.colour)
+        self._maps = PigmentMaps(self.colour)
 
     def decode(
         self, f_mel: Float32[np.ndarray, "*texels"], f_blood: Float32[np.ndarray, "*texels"]
@@ -115,7 +115,7 @@ class AlbedoColour:
         linear = np.asarray(albedo, np.float32)
         flat = np.ascontiguousarray(linear).reshape(-1, 3)
         f_mel, f_blood, f_mel_sd, f_blood_sd, skin = (
-            plane.reshape(linear.shape[:-1]) for plane in self._posterior(flat)
+            plane.reshape(linear.shape[:-1]) for plane in self._maps(flat)
         )
         offset = linear - self.decode(f_mel, f_blood)
         return AlbedoMaps(f_mel, f_blood, f_mel_sd, f_blood_sd, skin, offset)

@@ -1,5 +1,7 @@
 """The posterior of skins as a smooth function of their colour, tabulated and interpolated."""
 
+import copy
+from collections.abc import Sequence
 from itertools import product
 
 import torch
@@ -25,6 +27,9 @@ _MARGIN = 1.2
 _FAR = 1e3
 """Distance where no skin is near."""
 
+_LOGARITHMS = (0, 1, 3, 4)
+"""Rows that are tabulated as logarithms."""
+
 _COLOURS_AT_A_TIME, _PARTS = 1 << 17, 8
 """Colours that stay in the cache, and parts of them that threads share."""
 
@@ -44,17 +49,25 @@ class PosteriorTable:
         shells = logarithms @ self._axes
         self._low, self._high = _widen(shells.amin((0, 1)), shells.amax((0, 1)))
         self._table = self._tabulate(nodes, shells)
+        self._logarithms: tuple[int, ...] = _LOGARITHMS
 
-    def __call__(self, colours: Float[Tensor, "colours 3"]) -> Float[Tensor, "7 colours"]:
+    def select(self, rows: Sequence[int]) -> "PosteriorTable":
+        """Make a table that gives only some rows, in a share of the time."""
+        other = copy.copy(self)
+        other._table = self._table[:, list(rows)].contiguous()
+        other._logarithms = tuple(k for k, row in enumerate(rows) if row in _LOGARITHMS)
+        return other
+
+    def __call__(self, colours: Float[Tensor, "colours 3"]) -> Float[Tensor, "rows colours"]:
         """Interpolate the posterior of colours, float32.
 
         Returns:
             f_mel, its standard deviation and gain; the same of f_blood; distance from skin.
         """
         parts = [self._interpolate(part) for part in colours.split(_COLOURS_AT_A_TIME)]
-        return torch.cat(parts, 1) if parts else colours.new_empty(7, 0)
+        return torch.cat(parts, 1) if parts else colours.new_empty(self._table.shape[1], 0)
 
-    def _interpolate(self, colours: Float[Tensor, "colours 3"]) -> Float[Tensor, "7 colours"]:
+    def _interpolate(self, colours: Float[Tensor, "colours 3"]) -> Float[Tensor, "rows colours"]:
         scale = 2 / (self._high - self._low)
         axes, start = (self._axes * scale).float(), (-self._low * scale - 1).float()
         count = len(colours)
@@ -65,9 +78,9 @@ class PosteriorTable:
         grid = position.flip(-1).reshape(_PARTS, 1, 1, -1, 3)
         table = self._table.expand(_PARTS, -1, -1, -1, -1)
         values = F.grid_sample(table, grid, align_corners=True, padding_mode="border")
-        found = values[:, :, 0, 0].transpose(0, 1).reshape(7, -1)[:, :count]
-        for logarithms in (found[0:2], found[3:5]):
-            logarithms.exp_()
+        found = values[:, :, 0, 0].transpose(0, 1).reshape(values.shape[1], -1)[:, :count]
+        for row in self._logarithms:
+            found[row].exp_()
         return found
 
     def _tabulate(

@@ -12,13 +12,11 @@ from numpy.typing import NDArray
 from skinnet.cli import main
 from skinnet.images.srgb import srgb_to_linear
 from skinnet.material import AlbedoColour
+from skinnet.material._brushes import parse_brush
 from skinnet.material._map_files import WHITES, to_pixels
 
 SIZE = 32
 LINES = [3, 9, 20]
-PULLED = pytest.mark.xfail(
-    strict=True, reason="the median of the posterior pulls blood to that of people"
-)
 
 
 @pytest.fixture
@@ -51,12 +49,12 @@ def invert(pixels: NDArray[Any]) -> Any:
     [
         (("--melanin", 1.5), 0, lambda f: 1.5 * f),
         (("--melanin", 0.5), 0, lambda f: 0.5 * f),
-        pytest.param(("--hemoglobin", 2), 1, lambda f: 2 * f, marks=PULLED),
+        (("--hemoglobin", 2), 1, lambda f: 2 * f),
         (("--melanin-add", 0.05), 0, lambda f: f + 0.05),
         (("--hemoglobin-add", -0.01), 1, lambda f: f - 0.01),
         (("--melanin-paint", 0.1), 0, lambda f: 0 * f + 0.1),
         (("--preset", "tan"), 0, lambda f: 1.5 * f),
-        pytest.param(("--preset", "pallor"), 1, lambda f: 0.5 * f, marks=PULLED),
+        (("--preset", "pallor"), 1, lambda f: 0.5 * f),
     ],
 )
 def test_pigments_of_the_edited_skin(
@@ -67,8 +65,7 @@ def test_pigments_of_the_edited_skin(
     assert (after[LINES] == before[LINES]).all()
     found, start = (np.delete(invert(one)[map_], LINES, 0) for one in (after, before))
     ratio = found / change(start)
-    # Colours of the edited skin are inverted once more, under the prior of people.
-    assert np.median(ratio) == pytest.approx(1, abs=0.2), words
+    assert np.median(ratio) == pytest.approx(1, abs=0.02), words
 
 
 def test_factors_are_multiplied_by_those_of_a_preset(texture: Path) -> None:
@@ -123,6 +120,39 @@ def test_brushes_change_places_of_one_pigment(texture: Path, brush: str, map_: i
         assert (edit(texture, "--brush", f"{brush}{seed}seed=5") != after).any()
 
 
+@pytest.mark.parametrize("name", ["freckles", "moles"])
+def test_spots_have_no_rim(name: str) -> None:
+    axis = (np.arange(600) + 0.5) / 600
+    word = f"{name}:count=20000,size=0.002,radius=0.4"
+    painted = parse_brush(word).paint(axis, axis[::-1]) > 0
+    distance = np.hypot(axis - 0.5, axis[::-1, None] - 0.5) / 0.4
+    shares = [
+        painted[(distance >= low) & (distance < low + 0.1)].mean() for low in np.arange(0, 1, 0.1)
+    ]
+    assert np.all(np.diff(shares) < 0.02) and shares[-1] < 0.2 * shares[0]
+
+
+def test_patches_have_their_cover_and_soft_borders() -> None:
+    axis = (np.arange(1000) + 0.5) / 1000
+    brush = parse_brush("patches:cover=0.4,size=0.05,soft=0.02,radius=10")
+    painted = brush.paint(axis, axis[::-1])
+    assert (painted > 0.5).mean() == pytest.approx(0.4, abs=0.05)
+    down, across = np.gradient(painted, 1 / 1000)
+    border = np.hypot(down, across)[(painted > 0.3) & (painted < 0.7)]
+    assert 0.5 < 0.02 * np.median(border) < 2
+    melanin, hemoglobin = brush.compute_factors(axis, axis[::-1])
+    assert melanin.min() < 0.01 and hemoglobin.min() == pytest.approx(0.5, abs=0.01)
+
+
+def test_patches_shrink_towards_their_radius() -> None:
+    axis = (np.arange(400) + 0.5) / 400
+    painted = parse_brush("patches:radius=0.4,size=0.03").paint(axis, axis[::-1])
+    distance = np.hypot(axis - 0.5, axis[::-1, None] - 0.5) / 0.4
+    rim = painted[(distance > 0.96) & (distance < 1)]
+    assert painted[distance < 0.8].mean() > 0.2 and rim.mean() < 0.05
+    assert not painted[distance > 1].any()
+
+
 def test_a_brush_is_the_same_at_any_resolution(tmp_path: Path) -> None:
     small, large = (np.full((side, side, 3), (0.5, 0.27, 0.18), np.float32) for side in (32, 96))
     words = ("--brush", "freckles:count=30,size=0.1,radius=0.5,seed=3")
@@ -148,7 +178,7 @@ def test_without_an_edit_and_with_alpha_the_texture_comes_back(tmp_path: Path, n
     path = tmp_path / name
     kind = "half" if path.suffix == ".exr" else "uint8"
     stored = write_texture(path, paint_skin(SIZE), kind, alpha=True)
-    assert main(["-q", "edit-albedo", str(path)]) == 0
+    assert main(["-q", "edit-albedo", str(path), "--melanin", "1"]) == 0
     assert (read_pixels(tmp_path / f"a_edited{path.suffix}") == stored).all()
     assert main(["-q", "edit-albedo", str(path), "--melanin", "2"]) == 0
     after = read_pixels(tmp_path / f"a_edited{path.suffix}")
@@ -158,17 +188,42 @@ def test_without_an_edit_and_with_alpha_the_texture_comes_back(tmp_path: Path, n
 
 def test_a_set_is_edited_tile_by_tile(tmp_path: Path) -> None:
     tiles = (1001, 1002)
-    mask = np.zeros((SIZE, SIZE), np.uint8)
-    mask[3] = 255  # a line that is no skin, since a mask that is black everywhere is refused
     for tile in tiles:
         write_texture(tmp_path / f"f.{tile}.png", paint_skin(SIZE), "uint8")
-        write_grey(tmp_path / f"m.{tile}.png", np.maximum(mask, 255 if tile == 1002 else 0))
+        write_grey(
+            tmp_path / f"m.{tile}.png", np.full((SIZE, SIZE), 255 * (tile == 1002), np.uint8)
+        )
     words = ["--melanin", "2", "--mask", str(tmp_path / "m.<UDIM>.png")]
     assert main(["-q", "edit-albedo", str(tmp_path / "f.<UDIM>.png"), *words]) == 0
     for tile in tiles:
         before = read_pixels(tmp_path / f"f.{tile}.png")
         after = read_pixels(tmp_path / f"f_edited.{tile}.png")
         assert (before != after).any() == (tile == 1002)
+
+
+def test_a_set_of_masks_that_are_all_black_is_refused(tmp_path: Path, capsys) -> None:
+    for tile in (1001, 1002):
+        write_texture(tmp_path / f"f.{tile}.png", paint_skin(SIZE), "uint8")
+        write_grey(tmp_path / f"m.{tile}.png", np.zeros((SIZE, SIZE), np.uint8))
+    words = ["--melanin", "2", "--mask", str(tmp_path / "m.<UDIM>.png")]
+    assert main(["edit-albedo", str(tmp_path / "f.<UDIM>.png"), *words]) == 2
+    assert "black everywhere" in capsys.readouterr().err
+    assert not list(tmp_path.glob("*edited*"))
+
+
+def test_without_an_edit_an_earlier_one_stays(texture: Path, capsys) -> None:
+    edited = edit(texture, "--melanin", 2)
+    for words in ((), ("--mask", "m.png"), ("--melanin-add", "0")):
+        assert main(["edit-albedo", str(texture), *words]) == 2
+        assert "No edit of" in capsys.readouterr().err
+    assert (read_pixels(texture.with_name("a_edited.png")) == edited).all()
+    maps = texture.parent / "a_maps.json"
+    assert main(["-q", "invert", str(texture), "-o", str(texture.parent)]) == 0
+    again = edit(maps, "--melanin", 2)
+    assert main(["-q", "edit-albedo", str(maps)]) == 0
+    files = sorted(texture.parent.glob("a_edited*"))
+    assert len(files) == 3 and (again == edited).all()
+    assert sorted((read_pixels(file) == edited).all() for file in files) == [False, True, True]
 
 
 def test_a_brush_runs_across_the_tiles_of_a_set(tmp_path: Path) -> None:
@@ -191,6 +246,7 @@ def test_a_full_calibration_undoes_a_transform(tmp_path: Path, capsys) -> None:
     words = ["--calibration", "full", "--json", "-o", str(tmp_path)]
     assert main(["-q", "invert", str(tmp_path / "a.tif"), *words]) == 0
     assert json.loads(capsys.readouterr().out)["skin_share"] > 0.95
+    words[1] = str(tmp_path / "a_maps.json")
     assert main(["-q", "edit-albedo", str(tmp_path / "a.tif"), "--melanin", "1.5", *words]) == 0
     before, after = (read_pixels(tmp_path / name) for name in ("a.tif", "a_edited.tif"))
     assert (after < before).mean() > 0.95
@@ -226,6 +282,7 @@ def test_baked_highlights_are_said(tmp_path: Path, capsys) -> None:
         (("--brush", "frekles"), "Did you mean freckles?"),
         (("--brush", "moles:count=0"), "count of the brush moles is 1 to 20000; got 0"),
         (("--brush", "moles:number=3"), "The brush moles takes"),
+        (("--brush", "tan-line:radius=0.2"), "The brush tan-line takes u, v, width"),
         (("--light", "candle"), "no light 'candle'"),
         (("--calibration", "some"), "--calibration is none, exposure, full"),
     ],
@@ -236,7 +293,7 @@ def test_bad_words_are_one_sentence_and_leave_nothing(
     small = write_grey(texture.with_name("small.png"), np.full((16, 16), 255, np.uint8))
     before = sorted(texture.parent.iterdir())
     given = [str(small) if word == "SMALL" else word for word in words]
-    assert main(["edit-albedo", str(texture), *given]) == 2
+    assert main(["edit-albedo", str(texture), "--hemoglobin", "2", *given]) == 2
     error = capsys.readouterr().err
     assert said in error and len(error.strip().splitlines()) == 1
     assert sorted(texture.parent.iterdir()) == before
@@ -247,7 +304,8 @@ def test_a_mask_of_one_tile_is_not_enough_for_a_set(tmp_path: Path, capsys) -> N
         write_texture(tmp_path / f"f.{tile}.png", paint_skin(SIZE), "uint8")
     mask = write_grey(tmp_path / "m.1001.png", np.full((SIZE, SIZE), 255, np.uint8))
     for given in (mask, tmp_path / "m.<UDIM>.png"):
-        assert main(["edit-albedo", str(tmp_path / "f.1001.png"), "--mask", str(given)]) == 2
+        words = ["--melanin", "2", "--mask", str(given)]
+        assert main(["edit-albedo", str(tmp_path / "f.1001.png"), *words]) == 2
         assert "draw one for each tile" in capsys.readouterr().err
     assert not list(tmp_path.glob("*edited*"))
 
@@ -262,5 +320,6 @@ def test_the_name_of_a_file_is_no_folder(
     texture: Path, verb: str, capsys: pytest.CaptureFixture[str]
 ) -> None:
     target = texture.with_name("edited.png")
-    assert main([verb, str(texture), "-o", str(target)]) == 2
+    words = ["--melanin", "2"] if verb == "edit-albedo" else []
+    assert main([verb, str(texture), *words, "-o", str(target)]) == 2
     assert f"got {target}" in capsys.readouterr().err and not target.exists()

@@ -40,9 +40,8 @@ def test_the_maps_are_those_of_the_skin(tmp_path: Path, capsys) -> None:
     write_texture(path, paint_skin(), "uint16")
     assert main(["-q", "invert", str(path), "--json", "-o", str(tmp_path / "maps")]) == 0
     record = json.loads(capsys.readouterr().out)
-    # The posterior weighs all skins of a colour, so it is near the preset's own fraction.
-    assert record["melanin"]["median"] == pytest.approx(0.06, rel=0.3)
-    assert record["hemoglobin"]["median"] == pytest.approx(0.04, rel=0.6)
+    assert record["melanin"]["median"] == pytest.approx(0.06 * 1.05, rel=0.03)
+    assert record["hemoglobin"]["median"] == pytest.approx(0.04 * 1.05, rel=0.03)
     assert all(Path(file).is_file() for file in record["files"])
     melanin = read_pixels(tmp_path / "maps/face_melanin.png")[..., 0] / 65535 * 0.5
     assert np.corrcoef(melanin[30], np.linspace(0.7, 1.4, 48))[0, 1] > 0.98
@@ -132,7 +131,8 @@ def test_bad_input_is_one_sentence_and_leaves_nothing(
 ) -> None:
     path = _write_bad(tmp_path, kind)
     before = sorted(tmp_path.rglob("*.*"))
-    assert main([verb, str(path)]) == 2
+    words_of_edit = ["--melanin", "2"] if verb == "edit-albedo" else []
+    assert main([verb, str(path), *words_of_edit]) == 2
     error = capsys.readouterr().err
     assert words in error and len(error.strip().splitlines()) == 1
     assert sorted(tmp_path.rglob("*.*")) == before
@@ -144,3 +144,13 @@ def test_baked_highlights_are_said(tmp_path: Path, capsys) -> None:
     write_texture(tmp_path / "a.png", skin, "uint16")
     assert main(["invert", str(tmp_path / "a.png")]) == 0
     assert "brighter and whiter than skin" in capsys.readouterr().err
+
+
+def test_skin_whose_colours_have_no_hemoglobin_is_said(tmp_path: Path, capsys) -> None:
+    yellow = paint_skin(48) * np.float32([0.9, 1.04, 0.9])
+    write_texture(tmp_path / "a.png", yellow, "uint16")
+    assert main(["invert", str(tmp_path / "a.png")]) == 0
+    assert "of the skin has the least or the most hemoglobin" in capsys.readouterr().err
+    write_texture(tmp_path / "b.png", paint_skin(48), "uint16")
+    assert main(["invert", str(tmp_path / "b.png")]) == 0
+    assert "the most hemoglobin" not in capsys.readouterr().err

@@ -105,3 +105,10 @@ def test_no_colours_and_colours_out_of_the_table() -> None:
     outside = torch.tensor([[1e5, 1e5, 1e5], [-1e5, 0, 0], [0, 0, 0.9], [0.9, 0, 0], [0, 0.9, 0]])
     found = table(outside)
     assert found.isfinite().all() and (found[6] > REACH).all()
+
+
+def test_selected_rows_are_those_of_the_whole_table() -> None:
+    table, colours = make_table(0.003, 0.02), sample(500, 1, 0.0)[1]
+    rows = (1, 4, 6)
+    assert torch.equal(table.select(rows)(colours), table(colours)[list(rows)])
+    assert table.select(rows)(colours[:0]).shape == (3, 0)
