@@ -12,7 +12,7 @@ from skinnet.images.faces._face_chart import extend_landmarks, locate_on_chart
 _LEAST = 1e-4
 """Volume fraction below which logarithms are not taken."""
 
-_MOST_CHANGE, _MOST_DETAIL = 1.6, 1.5
+_MOST_CHANGE, _MOST_DETAIL = 2.0, 1.5
 """Largest log change of the local mean, and largest log ratio to it that is stretched."""
 
 _LEAST_SPREAD = -0.95

@@ -65,47 +65,47 @@ class Pattern(NamedTuple):
 
 PATTERNS = {
     "flush": Pattern(
-        0.22,
-        {"cheeks": 0.75, "lower cheeks": 0.5, "nose": 0.5, "forehead": 0.42, "ears": 0.7,
-         "chin": 0.35, "lips": 0.2, "mouth": 0.12, "eyelids": 0.08, "throat": 0.4},
+        0.32,
+        {"cheeks": 1.5, "lower cheeks": 0.95, "nose": 0.95, "forehead": 0.75, "ears": 1.3,
+         "chin": 0.55, "lips": 0.3, "mouth": 0.15, "eyelids": 0.1, "throat": 0.6},
         0.2,
         8.0,
         "cheeks, ears, nose, forehead and throat redden, where vessels are wide and near the "
-        "surface: Wilkin, Journal of the American Academy of Dermatology 19, 1988; sizes are ours "
-        "(twice the blood in the cheeks, as in Figure 6 of Alotaibi & Smith 2017)",
+        "surface: Wilkin, Journal of the American Academy of Dermatology 19, 1988; sizes are ours: "
+        "at half the amount cheeks have twice the blood, as in Figure 6 of Alotaibi & Smith 2017",
     ),
     "pallor": Pattern(
-        -0.5,
-        {"cheeks": -0.75, "nose": -0.6, "lips": -0.7, "ears": -0.7, "eyelids": -0.45,
-         "forehead": -0.55},
+        -0.65,
+        {"cheeks": -1.0, "nose": -0.8, "lips": -0.8, "ears": -0.9, "eyelids": -0.6,
+         "forehead": -0.75},
         -0.25,
         4.0,
         f"less blood, after {_JIMENEZ}; that lips, cheeks and ears lose most, and sizes, are ours",
     ),
     "exertion": Pattern(
-        0.4,
-        {"cheeks": 0.8, "lower cheeks": 0.6, "nose": 0.5, "forehead": 0.55, "ears": 0.7,
-         "temples": 0.5, "chin": 0.3, "lips": 0.25, "mouth": 0.02, "eyelids": 0.2,
-         "throat": 0.5},
+        0.6,
+        {"cheeks": 1.35, "lower cheeks": 1.0, "nose": 0.85, "forehead": 0.9, "ears": 1.2,
+         "temples": 0.8, "chin": 0.5, "lips": 0.3, "mouth": 0.02, "eyelids": 0.3,
+         "throat": 0.8},
         0.1,
         16.0,
         f"blood after exercise was measured by {_JIMENEZ}; places and sizes are ours, as is the "
         "paler skin around the mouth",
     ),
     "joy": Pattern(
-        0.0, {"cheeks": 0.25, "temples": 0.18, "chin": -0.1}, 0.05, 2.0,
+        0.0, {"cheeks": 0.35, "temples": 0.25, "chin": -0.15}, 0.05, 2.0,
         f"redder cheeks and temples, a paler chin: {_MARTINEZ}; sizes are ours",
     ),
     "surprise": Pattern(
-        0.0, {"forehead": 0.22, "cheeks": -0.06, "mouth": -0.06}, 0.0, 2.0,
+        0.0, {"forehead": 0.3, "cheeks": -0.08, "mouth": -0.08}, 0.0, 2.0,
         f"a redder forehead: {_MARTINEZ}; the rest and sizes are ours",
     ),
     "disgust": Pattern(
-        0.0, {"forehead": 0.15, "nose": 0.2, "mouth": -0.18, "lips": -0.15}, 0.0, 2.0,
+        0.0, {"forehead": 0.25, "nose": 0.3, "mouth": -0.25, "lips": -0.2}, 0.0, 2.0,
         f"redder forehead and nose, paler skin around the lips: {_MARTINEZ}; sizes are ours",
     ),
     "anger": Pattern(
-        0.12, {"forehead": 0.4, "cheeks": 0.35, "nose": 0.25, "ears": 0.35, "lips": -0.15}, 0.05,
+        0.2, {"forehead": 0.6, "cheeks": 0.6, "nose": 0.4, "ears": 0.6, "lips": -0.2}, 0.05,
         4.0,
         "faces redden with anger (Drummond, Psychophysiology 36, 1999); places and sizes are ours",
     ),
