@@ -8,7 +8,7 @@ from numpy.typing import NDArray
 from skinnet.errors import InputError
 from skinnet.images._arguments import check_number
 
-Amounts = Mapping[str, float]
+Amounts = Mapping[str, int | float]
 
 
 def check_amounts(amounts: Amounts, states: Mapping[str, Amounts], names: Sequence[str]) -> None:

@@ -36,14 +36,14 @@ class BloodChange:
     spread: NDArray[np.float32]
     landmarks: NDArray[np.float32]
     window: float
-    amounts: dict[str, float]
+    amounts: dict[str, int | float]
 
     def __call__(
         self,
         hemoglobin: NDArray[np.float32],
         landmarks: NDArray[np.floating],
         skin: NDArray[np.floating],
-        most: float,
+        most: int | float,
     ) -> NDArray[np.float32]:
         """Change the hemoglobin of a picture.
 
@@ -57,9 +57,18 @@ class BloodChange:
             The volume fractions, [h, w].
         """
         places, weight = locate_on_chart(landmarks, self.landmarks, hemoglobin.shape)
-        mean, spread = (weight * sample_field(each, places) for each in (self.mean, self.spread))
+        mean, spread = (_lay_out(each, places, weight) for each in (self.mean, self.spread))
         sigma = self.window * _measure_chart(landmarks, self.landmarks)
         return stretch(hemoglobin, mean, spread, skin, sigma, most)
+
+
+def _lay_out(
+    field: Fields, places: NDArray[np.floating], weight: NDArray[np.float32]
+) -> NDArray[np.float32]:
+    """Sample a field; beyond the rim skin changes as it does at the field's edges in the mean."""
+    edges = np.concatenate([field[0], field[-1], field[:, 0], field[:, -1]])
+    beyond = np.float32(edges.mean())
+    return np.asarray(beyond + weight * (sample_field(field, places) - beyond), np.float32)
 
 
 def sample_field(field: Fields, places: NDArray[np.floating]) -> NDArray[np.float32]:
@@ -75,7 +84,7 @@ def stretch(
     spread: Fields,
     skin: NDArray[np.floating],
     sigma: float,
-    most: float,
+    most: int | float,
 ) -> NDArray[np.float32]:
     """Move the local mean of log hemoglobin, and stretch what differs from it.
 

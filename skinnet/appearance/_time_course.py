@@ -16,7 +16,7 @@ _SAMPLES = 200
 Array = NDArray[np.float64]
 
 
-def respond(amount: float, seconds: float, time: float) -> float:
+def respond(amount: float, seconds: float, time: int | float) -> float:
     """The amount after a time in seconds, for a cause that has begun at 0 and stays."""
     return amount if seconds <= 0 else amount * float(-np.expm1(-max(time, 0.0) / seconds))
 
@@ -36,7 +36,7 @@ def follow(amounts: Array, times: Array, seconds: float) -> Array:
     return response
 
 
-def beat(times: Array | float, rate: float) -> Array:
+def beat(times: Array | int | float, rate: int | float) -> Array:
     """The pulse wave at times in seconds, for a rate in beats per minute: 0 to 1, and 1 its peak.
 
     Source:

@@ -37,7 +37,7 @@ _RATE = 70.0
 _REST = 0.05
 _ARRAYS = ("mean", "spread", "landmarks", "seconds")
 
-Amounts = Mapping[str, float]
+Amounts = Mapping[str, int | float]
 
 
 @dataclass(frozen=True, eq=False)
@@ -146,7 +146,7 @@ class DynamicModel:
     seconds: NDArray[np.float32]
     states: Mapping[str, Amounts] = field(default_factory=dict)
     sources: Mapping[str, str] = field(default_factory=dict)
-    errors: Mapping[str, float] = field(default_factory=dict)
+    errors: Amounts = field(default_factory=dict)
     window: float = _WINDOW
 
     def __repr__(self) -> str:
@@ -158,10 +158,10 @@ class DynamicModel:
         sequences: Sequence[BloodSequence],
         *,
         landmarks: NDArray[np.floating] | None = None,
-        seconds: Mapping[str, float] | None = None,
+        seconds: Amounts | None = None,
         states: Mapping[str, Amounts] | None = None,
         sources: Mapping[str, str] | None = None,
-        ridge: float = _RIDGE,
+        ridge: int | float = _RIDGE,
         size: int = _SIZE,
     ) -> "DynamicModel":
         """Fit the model to sequences of maps on one chart.
@@ -219,7 +219,7 @@ class DynamicModel:
         )
 
     def change(
-        self, amounts: Amounts, time: float | None = None, rate: float = _RATE
+        self, amounts: Amounts, time: int | float | None = None, rate: int | float = _RATE
     ) -> BloodChange:
         """Make the change of hemoglobin for some states, such as `Decomposer.edit` takes.
 
@@ -257,9 +257,9 @@ class DynamicModel:
         landmarks: NDArray[np.floating] | None = None,
         *,
         skin: NDArray[np.floating] | None = None,
-        time: float | None = None,
-        rate: float = _RATE,
-        most: float = _MOST,
+        time: int | float | None = None,
+        rate: int | float = _RATE,
+        most: int | float = _MOST,
     ) -> NDArray[np.float32]:
         """Compute hemoglobin of a face in some states.
 
@@ -299,7 +299,7 @@ class DynamicModel:
         self,
         amounts: Mapping[str, NDArray[np.float64]],
         times: NDArray[np.float64],
-        rate: float = _RATE,
+        rate: int | float = _RATE,
     ) -> dict[str, NDArray[np.float64]]:
         """Compute how blood follows amounts that change: with its lag, and with each beat.
 
@@ -329,7 +329,7 @@ class DynamicModel:
         }
 
     def explain(
-        self, sequence: BloodSequence, names: Sequence[str], ridge: float = _RIDGE
+        self, sequence: BloodSequence, names: Sequence[str], ridge: int | float = _RIDGE
     ) -> dict[str, NDArray[np.float64]]:
         """Find the amounts that explain a sequence, so that another face can be given them.
 
@@ -406,7 +406,7 @@ class DynamicModel:
         arrays = (self.mean, self.spread, self.landmarks, self.seconds)
         return fits and used <= {*self.names} and all(np.isfinite(each).all() for each in arrays)
 
-    def _mix(self, wanted: NDArray[np.float64], amounts: dict[str, float]) -> BloodChange:
+    def _mix(self, wanted: NDArray[np.float64], amounts: dict[str, int | float]) -> BloodChange:
         share = wanted.astype(np.float32)
         mean, spread = (np.tensordot(share, each, 1) for each in (self.mean, self.spread))
         return BloodChange(mean, spread, self.landmarks, self.window, amounts)

@@ -15,7 +15,7 @@ _RIM = 1.75
 """Distance of the rim from the middle of the face, in distances of the face's outline."""
 
 _SIDE = 1.9
-"""Side of a chart in sides of the face's box, so that the whole rim lies in it."""
+"""Side of a chart in sides of the face's box, so that the rim lies about at its edges."""
 
 _SOLID = 1.6
 """The rim's influence ends this many times nearer to the outline than the rim is, so that ears are
