@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 from skinnet.appearance import _array_file
 from skinnet.appearance._amounts import check_amounts, join_states
-from skinnet.appearance._blood_change import BloodChange, stretch
+from skinnet.appearance._blood_change import BloodChange
 from skinnet.appearance._dynamic_fit import (
     Example,
     find_lags,
@@ -311,17 +311,25 @@ class DynamicModel:
         Returns:
             Coefficients over time, [frames] each, whose values at a frame `sample` takes.
 
+        Raises:
+            InputError: As of `sample`, or amounts and times differ in number.
+
         Example:
             >>> model = DynamicModel.load()
             >>> course = model.follow({"flush": np.ones(3)}, np.arange(3.0))
             >>> course["flush"].tolist()
             [1.0, 1.0, 1.0]
         """
-        frames = [dict(zip(amounts, row, strict=True)) for row in zip(*amounts.values())]
-        for each in frames:
+        lengths = {len(each) for each in amounts.values()}
+        if not lengths <= {len(times)}:
+            raise InputError(
+                f"Amounts over time are one for each of the {len(times)} times; got {lengths}."
+            )
+        wanted = np.zeros((len(times), len(self.names)))
+        for frame in range(len(times)):
+            each = {name: float(values[frame]) for name, values in amounts.items()}
             check_amounts(each, self.states, self.names)
-        wanted = np.array([join_states(each, self.states, self.names) for each in frames])
-        wanted = wanted.reshape(len(frames), len(self.names))
+            wanted[frame] = join_states(each, self.states, self.names)
         return {
             name: column * beat(times, rate) if name == PULSE else follow(column, times, float(lag))
             for name, column, lag in zip(self.names, wanted.T, self.seconds, strict=True)

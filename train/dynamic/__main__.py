@@ -144,7 +144,9 @@ def compare(model: DynamicModel, truth: TrueModel, faces: ChartedFaces) -> dict[
     }
 
 
-def _halve(fields: Float[np.ndarray, "*fields size size"]) -> Float[np.ndarray, "*fields half half"]:
+def _halve(
+    fields: Float[np.ndarray, "*fields size size"],
+) -> Float[np.ndarray, "*fields half half"]:
     """Mean of each two by two texels."""
     half = fields.shape[-1] // 2
     return np.asarray(fields.reshape(*fields.shape[:-2], half, 2, half, 2).mean((-3, -1)))

@@ -145,9 +145,7 @@ def draw_pattern(
     """Draw the changes of mean and spread on a chart, [size, size] both."""
     line = (np.arange(size) + 0.5) / size
     x, y = np.meshgrid(line, line)
-    shares = {
-        name: _draw_place(PLACES[name], landmarks, x, y) for name in pattern.places
-    }
+    shares = {name: _draw_place(PLACES[name], landmarks, x, y) for name in pattern.places}
     background = 0.5
     total = sum(shares.values(), np.full((size, size), background))
     mean = np.full((size, size), background * pattern.everywhere)

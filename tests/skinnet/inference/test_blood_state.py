@@ -11,7 +11,9 @@ from skinnet.inference._blood_state import check_state, place_state
 class Doubled:
     """A state that doubles the blood of skin right of the first landmark."""
 
-    amounts = {"doubled": 1.0}
+    @property
+    def amounts(self) -> dict[str, float]:
+        return {"doubled": 1.0}
 
     def __call__(
         self, hemoglobin: np.ndarray, landmarks: np.ndarray, skin: np.ndarray, most: float
