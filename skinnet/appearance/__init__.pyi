@@ -1,5 +1,5 @@
+from .blood_sequence import BloodSequence as BloodSequence
 from .colour import SkinColour as SkinColour
-from .dynamic import BloodSequence as BloodSequence
 from .dynamic import DynamicModel as DynamicModel
 from .edit import PigmentEdit as PigmentEdit
 from .edit import edit_texture as edit_texture

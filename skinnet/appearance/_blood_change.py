@@ -103,7 +103,7 @@ def stretch(
         Jimenez et al. 2010, who match local distributions by mean and standard deviation.
     """
     logs = np.log(np.maximum(hemoglobin, _LEAST))
-    detail = 0.0
+    detail = np.zeros(logs.shape)
     if np.any(spread):
         local, _ = measure_local(logs, skin, sigma)
         detail = np.clip(logs - local, -_MOST_DETAIL, _MOST_DETAIL)

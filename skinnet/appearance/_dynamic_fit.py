@@ -48,8 +48,9 @@ class Example(NamedTuple):
 
     def cut(self, part: slice) -> "Example":
         """Some of its frames."""
-        frames = (each[part] for each in self[1:])
-        return Example(self.rest, *frames)
+        return Example(
+            self.rest, self.maps[part], self.times[part], self.amounts[part], self.means[part]
+        )
 
     def delay(self, seconds: Array) -> Array:
         """Responses [frames, names] to the coefficients with time constants [names]."""

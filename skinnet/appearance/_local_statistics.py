@@ -22,9 +22,10 @@ def measure_local(
     Returns:
         Both, [h, w].
     """
-    share = _blur(weight.astype(np.float64), sigma) + _LEAST
-    mean = _blur(weight * values.astype(np.float64), sigma) / share
-    square = _blur(weight * (values - mean) ** 2, sigma) / share
+    counted, known = weight.astype(np.float64), values.astype(np.float64)
+    share = _blur(counted, sigma) + _LEAST
+    mean = _blur(counted * known, sigma) / share
+    square = _blur(counted * (known - mean) ** 2, sigma) / share
     return mean, np.sqrt(square)
 
 

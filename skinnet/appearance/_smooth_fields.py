@@ -32,7 +32,8 @@ def shrink_fields(
     inverse = np.linalg.inv(design.T @ design + ridge * np.eye(design.shape[1]))
     power = np.mean(slopes[:, seen] ** 2, 1)
     share = 1 - noise * np.diag(inverse) / np.maximum(power, 1e-12)
-    return slopes * np.clip(share, 0, 1)[:, None]
+    shrunk: Array = slopes * np.clip(share, 0, 1)[:, None]
+    return shrunk
 
 
 def smooth_fields(fields: Array, weight: Array, reach: float) -> Array:

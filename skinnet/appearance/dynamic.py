@@ -3,14 +3,13 @@
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
-from skinnet.appearance import _array_file
 from skinnet.appearance._amounts import check_amounts, join_states
 from skinnet.appearance._blood_change import BloodChange
+from skinnet.appearance._dynamic_file import ARRAYS, FIELD_SIZE, read_model, write_model
 from skinnet.appearance._dynamic_fit import (
     Example,
     find_lags,
@@ -21,87 +20,19 @@ from skinnet.appearance._dynamic_fit import (
 from skinnet.appearance._ridge import fit_places
 from skinnet.appearance._sequence_statistics import measure_means
 from skinnet.appearance._time_course import PULSE, beat, follow, respond
-from skinnet.appearance._track_rows import read_track_rows, spread_regions
+from skinnet.appearance.blood_sequence import BloodSequence
 from skinnet.errors import InputError
 
-_SHIPPED = Path(__file__).parent / "models" / "dynamic.npz"
-
-_SIZE, _WINDOW, _RIDGE = 48, 0.03, 0.05
-"""Side of the fields, standard deviation of the local window in sides of the chart (a sixteenth of
-a face), and what is added to each coefficient's sum of squares."""
+_WINDOW, _RIDGE = 0.03, 0.05
+"""Standard deviation of the local window in sides of the chart (a sixteenth of a face), and what is
+added to each coefficient's sum of squares."""
 
 _MOST = 0.15
 """Largest volume fraction of blood in the shipped skin model."""
 
 _RATE = 70.0
-_REST = 0.05
-_ARRAYS = ("mean", "spread", "landmarks", "seconds")
 
 Amounts = Mapping[str, int | float]
-
-
-@dataclass(frozen=True, eq=False)
-class BloodSequence:
-    """Hemoglobin of a face over time, with what has caused it.
-
-    Attributes:
-        rest: Volume fractions at rest on the chart, [size, size]; NaN where there is no skin.
-        maps: The same of the frames, [frames, size, size].
-        times: In seconds, [frames].
-        coefficients: Amount of each cause by its name, [frames] each.
-
-    Example:
-        >>> rest = np.full((64, 64), 0.05)
-        >>> maps = np.stack([rest, 1.5 * rest])
-        >>> BloodSequence(rest, maps, np.arange(2.0), {"flush": np.arange(2.0)}).maps.shape
-        (2, 64, 64)
-    """
-
-    rest: NDArray[np.floating]
-    maps: NDArray[np.floating]
-    times: NDArray[np.float64]
-    coefficients: Mapping[str, NDArray[np.float64]]
-
-    def __post_init__(self) -> None:
-        side, frames = np.shape(self.rest)[:1], np.shape(self.times)
-        if np.shape(self.rest) != 2 * side or np.shape(self.maps) != (*frames, *side, *side):
-            raise InputError(
-                "A sequence has one square map at rest, a map of that size for each time; got "
-                f"{np.shape(self.rest)}, {np.shape(self.maps)} and {len(self.times)} times."
-            )
-        if not np.all(np.diff(self.times) > 0):
-            raise InputError("Times of a sequence are seconds that increase.")
-        for name, values in self.coefficients.items():
-            if np.shape(values) != frames or not np.isfinite(values).all():
-                raise InputError(
-                    f"{name} needs one finite amount for each of the {frames[0]} times; got an "
-                    f"array {np.shape(values)}."
-                )
-
-    @classmethod
-    def from_track(
-        cls,
-        table: str | Path,
-        coefficients: Mapping[str, NDArray[np.float64]] | None = None,
-        size: int = _SIZE,
-    ) -> "BloodSequence":
-        """Read the table that `skinnet track` writes: log ratios of regions to the baseline.
-
-        Args:
-            table: NAME_track.csv.
-            coefficients: Amount of each cause at each row; None if they are not known.
-            size: Side of the chart.
-
-        Returns:
-            The sequence, with values between the regions; local deviations are not known of it.
-
-        Raises:
-            InputError: The table cannot be read, or does not fit the coefficients.
-        """
-        times, ratios = read_track_rows(Path(table))
-        change = spread_regions(ratios, DynamicModel.load().landmarks, size)
-        rest = np.full((size, size), _REST)
-        return cls(rest, rest * np.exp(change), times, coefficients or {})
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -162,7 +93,7 @@ class DynamicModel:
         states: Mapping[str, Amounts] | None = None,
         sources: Mapping[str, str] | None = None,
         ridge: int | float = _RIDGE,
-        size: int = _SIZE,
+        size: int = FIELD_SIZE,
     ) -> "DynamicModel":
         """Fit the model to sequences of maps on one chart.
 
@@ -281,13 +212,13 @@ class DynamicModel:
                 axes.
         """
         level = np.asarray(rest, np.float32)
-        if level.ndim != 2 or (skin is not None and np.shape(skin) != level.shape):
+        weight = np.ones_like(level) if skin is None else np.asarray(skin, np.float32)
+        if level.ndim != 2 or weight.shape != level.shape:
             raise InputError(
                 f"Hemoglobin is a map [h, w], and skin has its shape; got {level.shape} and "
-                f"{np.shape(skin)}."
+                f"{weight.shape}."
             )
         change = self.change(amounts, time, rate)
-        weight = np.ones_like(level) if skin is None else np.asarray(skin, np.float32)
         if landmarks is None:
             sides = np.array(level.shape[::-1])
             changed = change(level, self.landmarks * sides, weight, most)
@@ -369,15 +300,14 @@ class DynamicModel:
         Raises:
             InputError: It has another ending, or cannot be written.
         """
-        header: dict[str, Any] = {
+        header = {
             "names": list(self.names),
             "states": {name: dict(each) for name, each in self.states.items()},
             "sources": dict(self.sources),
             "errors": dict(self.errors),
             "window": self.window,
         }
-        arrays = {name: getattr(self, name) for name in _ARRAYS}
-        _array_file.write_arrays(Path(path), type(self).__name__, header, arrays, compress=True)
+        write_model(Path(path), header, {name: getattr(self, name) for name in ARRAYS})
 
     @classmethod
     def load(cls, path: str | Path | None = None) -> "DynamicModel":
@@ -389,30 +319,18 @@ class DynamicModel:
         Raises:
             InputError: The file is missing, damaged or of another kind.
         """
-        file = _SHIPPED if path is None else Path(path)
-        header, arrays = _array_file.read_arrays(file, cls.__name__, _ARRAYS)
-        try:
-            model = cls(
-                tuple(str(name) for name in header["names"]),
-                *(np.asarray(arrays[name], np.float32) for name in _ARRAYS),
-                {str(name): dict(each) for name, each in header["states"].items()},
-                dict(header["sources"]),
-                dict(header["errors"]),
-                float(header["window"]),
-            )
-        except _array_file.ARCHIVE_ERRORS as error:
-            raise _array_file.make_damage_error(file) from error
-        if not model._is_sound():
-            raise _array_file.make_damage_error(file)
-        return model
-
-    def _is_sound(self) -> bool:
-        count, size = len(self.names), self.mean.shape[-1]
-        shapes = (self.mean.shape, self.spread.shape, self.landmarks.shape, self.seconds.shape)
-        fits = shapes == (2 * ((count, size, size),) + ((478, 2), (count,)))
-        used = {name for each in self.states.values() for name in each}
-        arrays = (self.mean, self.spread, self.landmarks, self.seconds)
-        return fits and used <= {*self.names} and all(np.isfinite(each).all() for each in arrays)
+        header, arrays = read_model(None if path is None else Path(path))
+        return cls(
+            header["names"],
+            arrays["mean"],
+            arrays["spread"],
+            arrays["landmarks"],
+            arrays["seconds"],
+            header["states"],
+            header["sources"],
+            header["errors"],
+            header["window"],
+        )
 
     def _mix(self, wanted: NDArray[np.float64], amounts: dict[str, int | float]) -> BloodChange:
         share = wanted.astype(np.float32)

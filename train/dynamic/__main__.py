@@ -15,7 +15,9 @@ from pathlib import Path
 import numpy as np
 from jaxtyping import Float, Float32
 
-from skinnet.appearance.dynamic import _SHIPPED, _SIZE, _WINDOW, BloodSequence, DynamicModel
+from skinnet.appearance import BloodSequence, DynamicModel
+from skinnet.appearance._dynamic_file import FIELD_SIZE, SHIPPED
+from skinnet.appearance.dynamic import _WINDOW
 from skinnet.errors import InputError
 from train.dynamic.charted_faces import ChartedFaces, chart_faces
 from train.dynamic.sequences import TrueModel, sample_sequence
@@ -27,7 +29,7 @@ _MOVED = 0.04
 """Least log change of an expression that the model keeps: others, such as of the gaze, do nothing
 to the skin."""
 
-_FINE = 2 * _SIZE
+_FINE = 2 * FIELD_SIZE
 """Side in texels of the maps that are fitted."""
 
 _STEPS = 48
@@ -50,7 +52,7 @@ def main(argv: Sequence[str] | None = None) -> int:
         The exit code, 2 for bad input.
     """
     parser = argparse.ArgumentParser(description=(__doc__ or "").splitlines()[0])
-    parser.add_argument("-o", "--output", type=Path, default=_SHIPPED)
+    parser.add_argument("-o", "--output", type=Path, default=SHIPPED)
     parser.add_argument("--ict", help="File of ICT-FaceKit; without it there are no expressions.")
     parser.add_argument("--geometry", default="runs/geometry", help="Folder of the heads.")
     parser.add_argument("--faces", type=int, default=48, help="Faces that are tried.")

@@ -88,4 +88,4 @@ def _make_symmetric(places: Float[np.ndarray, "478 2"]) -> Float[np.ndarray, "47
     for part in (slice(0, MESH_POINTS), slice(MESH_POINTS, len(places))):
         apart = np.linalg.norm(places[part, None] - mirrored[None, part], axis=-1)
         partner[part] = apart.argmin(1) + (part.start or 0)
-    return (places + mirrored[partner]) / 2
+    return np.asarray((places + mirrored[partner]) / 2)

@@ -7,9 +7,9 @@ import numpy as np
 from jaxtyping import Float
 from scipy import ndimage
 
+from skinnet.appearance import BloodSequence
 from skinnet.appearance._blood_change import stretch
 from skinnet.appearance._time_course import PULSE, beat, follow
-from skinnet.appearance.dynamic import BloodSequence
 
 _RATE, _STEP = 70.0, 0.4
 """Pulse in beats per minute, and seconds between frames: no multiple of a beat."""
@@ -56,8 +56,8 @@ def sample_sequence(
         sigma: Standard deviation of the local window in texels.
         rng: Random numbers.
     """
-    times = _STEP * np.arange(frames)
-    amounts = _sample_amounts(truth.names, frames, rng)
+    times = np.asarray(_STEP * np.arange(frames), np.float64)
+    amounts = np.asarray(_sample_amounts(truth.names, frames, rng), np.float64)
     driven = amounts.copy()
     for index, name in enumerate(truth.names):
         if name == PULSE:

@@ -164,4 +164,4 @@ def _draw_place(place: Place, landmarks: Float[np.ndarray, "478 2"], x: Chart, y
         column, row = landmarks[number] + place.outward * (landmarks[number] - middle)
         square = ((x - column) / place.right) ** 2 + ((y - row) / place.down) ** 2
         spots.append(5 * np.exp(-0.5 * square))
-    return np.max(spots, 0)
+    return np.asarray(np.max(spots, 0))
