@@ -3,11 +3,11 @@
     python -m examples.dynamic --ict ict_facekit.npz [-o docs/figures/dynamic.png] [--size 320]
     python -m examples.dynamic --ict ict_facekit.npz --animation face.mp4 [--track clip_track.csv]
 
-The faces are renders of the project's own, and the blood is that of the dynamic model. The
-animation smiles, is embarrassed and turns pale; with the table of `skinnet track`, its blood is that
-of the person in the video. It is an MP4, or a folder of PNG files if its name has no ending. Without
-the file that `python -m tools.ict_facekit` makes of a checkout of ICT-FaceKit, the heads are
-procedural, and expressions bend their picture.
+The faces are renders of the project's own, and the blood is that of the dynamic model. In the
+animation a face smiles, blushes and turns pale; with the table of `skinnet track`, its blood is
+that of the person in the video. It is an MP4, or a folder of PNG files if its name has no ending.
+Without the file that `python -m tools.ict_facekit` makes of a checkout of ICT-FaceKit, the heads
+are procedural, and expressions bend their picture.
 """
 
 import argparse
