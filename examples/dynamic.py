@@ -2,17 +2,19 @@
 
     python -m examples.dynamic --ict ict_facekit.npz [-o docs/figures/dynamic.png] [--size 320]
     python -m examples.dynamic --ict ict_facekit.npz --animation face.mp4 [--track clip_track.csv]
+    python -m examples.dynamic --photo photo.jpg --animation photo.mp4 [--track clip_track.csv]
 
 The faces are renders of the project's own, and the blood is that of the dynamic model. In the
 animation a face smiles, blushes and turns pale; with the table of `skinnet track`, its blood is
-that of the person in the video. It is an MP4, or a folder of PNG files if its name has no ending.
-Without the file that `python -m tools.ict_facekit` makes of a checkout of ICT-FaceKit, the heads
-are procedural, and expressions bend their picture.
+that of the person in the video. A photograph takes that blood too, with its own expression. The
+animation is an MP4, or a folder of PNG files if its name has no ending. Without the file that
+`python -m tools.ict_facekit` makes of a checkout of ICT-FaceKit, the heads are procedural, and
+expressions bend their picture.
 """
 
 import argparse
 import sys
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator, Mapping
 from pathlib import Path
 
 import numpy as np
@@ -26,6 +28,8 @@ from examples.strip import SITTERS
 from skinnet.appearance import BloodSequence, DynamicModel
 from skinnet.errors import InputError
 from skinnet.files import make_folder
+from skinnet.images import read_picture
+from skinnet.inference import Decomposer
 from skinnet.inference._tiles import draw_grid, draw_picture
 
 TARGET = Path("docs/figures/dynamic.png")
@@ -53,6 +57,9 @@ _COURSES = {
 
 _TRACKED = ("flush", "pallor", "pulse")
 
+Draw = Callable[[float, Mapping[str, float]], NDArray[np.uint8]]
+Frames = Iterator[tuple[float, NDArray[np.uint8]]]
+
 
 def draw_figure(size: int, ict: Path | None) -> NDArray[np.uint8]:
     """Draw the figure, with a row for each person."""
@@ -64,12 +71,14 @@ def draw_figure(size: int, ict: Path | None) -> NDArray[np.uint8]:
     return draw_grid(tiles, len(COLUMNS))
 
 
-def animate(
-    sitter: Sitter, size: int, ict: Path | None, table: Path | None
-) -> Iterator[tuple[float, NDArray[np.uint8]]]:
-    """Render the animation: times in seconds, and frames."""
+def animate(draw: Draw, table: Path | None) -> Frames:
+    """Draw the frames of the animation, each with its time in seconds.
+
+    Args:
+        draw: Draws a frame, given how much it smiles and the amounts of blood.
+        table: The table of `skinnet track` whose blood is played; None: that of the animation.
+    """
     model = DynamicModel.load()
-    face = LivingFace(sitter, size, ict, model)
     if table is None:
         times = np.arange(round(RATE * SECONDS)) / RATE
         causes = {name: _ramp(times, *course) for name, course in _COURSES.items()}
@@ -81,11 +90,22 @@ def animate(
         blood = model.explain(sequence, _TRACKED)
     for frame, time in enumerate(times.tolist()):
         amounts = {name: float(values[frame]) for name, values in blood.items()}
-        stage = round(_STEPS * float(smile[frame])) / _STEPS
-        yield time, face.render({"smile": stage}, amounts)
+        yield time, draw(round(_STEPS * float(smile[frame])) / _STEPS, amounts)
 
 
-def write_animation(path: Path, frames: Iterator[tuple[float, NDArray[np.uint8]]]) -> None:
+def draw_render(sitter: Sitter, size: int, ict: Path | None) -> Draw:
+    """Make the function that draws frames of a rendered face."""
+    face = LivingFace(sitter, size, ict, DynamicModel.load())
+    return lambda smile, blood: face.render({"smile": smile}, blood)
+
+
+def draw_photo(path: Path) -> Draw:
+    """Make the function that draws frames of a photograph, whose expression stays."""
+    model, face = DynamicModel.load(), Decomposer()(read_picture(path), detail=False)
+    return lambda _, blood: face.edit(state=model.change(blood))
+
+
+def write_animation(path: Path, frames: Frames) -> None:
     """Write frames as an MP4, or as PNG files in a folder.
 
     Raises:
@@ -126,6 +146,7 @@ def main(arguments: list[str] | None = None) -> int:
     parser.add_argument("--size", type=int, default=320, help="side of the faces in pixels")
     parser.add_argument("--animation", type=Path, help="an .mp4 or a folder, instead of the figure")
     parser.add_argument("--track", type=Path, help="table of skinnet track, for the animation")
+    parser.add_argument("--photo", type=Path, help="a photograph that the animation is made of")
     parser.add_argument("--person", type=int, default=0, help="0 light, 1 medium, 2 dark")
     given = parser.parse_args(arguments)
 
@@ -133,8 +154,11 @@ def main(arguments: list[str] | None = None) -> int:
         check_number("--size", given.size, 64, 1024)
         check_number("--person", given.person, 0, len(SITTERS) - 1)
         if given.animation is not None:
-            frames = animate(SITTERS[given.person], given.size, given.ict, given.track)
-            write_animation(given.animation, frames)
+            if given.photo is None:
+                draw = draw_render(SITTERS[given.person], given.size, given.ict)
+            else:
+                draw = draw_photo(given.photo)
+            write_animation(given.animation, animate(draw, given.track))
             print(f"written: {given.animation}")
             return
         check_picture(given.output, TARGET, "dynamic")

@@ -8,7 +8,6 @@ from numpy.typing import NDArray
 
 from skinnet.errors import InputError
 from skinnet.images.box import Box
-from skinnet.images.faces.face import Face
 
 
 @runtime_checkable
@@ -55,12 +54,19 @@ def check_state(state: Any, region: Any) -> None:
 def place_state(
     state: BloodState,
     outputs: Mapping[str, NDArray[np.float32]],
-    face: Face,
+    landmarks: NDArray[np.floating],
     box: Box,
     most: float,
 ) -> NDArray[np.float32]:
-    """Hemoglobin [1, h, w] in a state, from the encoder's outputs for a box around a face."""
+    """Hemoglobin [1, h, w] in a state, from the encoder's outputs for a box around a face.
+
+    Args:
+        state: The state.
+        outputs: Maps [1, h, w] of the box.
+        landmarks: Columns and rows of the face's landmarks in the photograph, [478, 2].
+        box: The part of the photograph that was read.
+        most: The largest volume fraction.
+    """
     blood, skin = outputs["hemoglobin"][0], outputs["mask"][0]
     scale = np.array([blood.shape[1] / box.width, blood.shape[0] / box.height])
-    landmarks = (face.landmarks - (box.left, box.top)) * scale
-    return state(blood, landmarks, skin, most)[None]
+    return state(blood, (landmarks - (box.left, box.top)) * scale, skin, most)[None]

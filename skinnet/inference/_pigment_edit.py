@@ -46,12 +46,15 @@ class EditSource(NamedTuple):
             capture [1, ...]; None if they are not those of the photograph as it was given, whose
             tone curve a profile has undone.
         models: What has read it; None for the shipped models.
+        landmarks: Columns and rows of the face's landmarks in the photograph, [478, 2]; None if no
+            face was looked for, or they are not kept.
     """
 
     picture: Picture
     crop: HeadCrop
     outputs: Arrays | None
     models: ModelPair | None = None
+    landmarks: NDArray[np.float32] | None = None
 
 
 def select_edited(encoder_outputs: Arrays) -> dict[str, NDArray[np.float32]]:

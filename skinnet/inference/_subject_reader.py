@@ -124,7 +124,13 @@ class SubjectReader:
             faces_found=None if subject.faces is None else len(subject.faces),
             face_parts=None if subject.face is None else find_face_parts(photo, subject.face),
             provider=self.encoder.provider,
-            _source=EditSource(picture, subject.crop, select_edited(encoder_outputs), self),
+            _source=EditSource(
+                picture,
+                subject.crop,
+                select_edited(encoder_outputs),
+                self,
+                None if subject.face is None else subject.face.landmarks,
+            ),
         )
 
     def _doubt_white(self, applied: Applied, subject: Subject, name: str, known: Inputs) -> Subject:
@@ -196,7 +202,7 @@ class SubjectReader:
         blood = None
         if state is not None and subject.face is not None:
             most = self.encoder.output_info["hemoglobin"].range[1]
-            blood = place_state(state, outputs, subject.face, box, most)
+            blood = place_state(state, outputs, subject.face.landmarks, box, most)
         means = edit_in_place(
             colour, subject.crop, outputs, skin, factors, self.decoder, share, blood
         )

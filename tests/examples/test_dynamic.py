@@ -5,6 +5,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 from PIL import Image
+from skimage.data import astronaut
 
 from examples import dynamic
 from examples._living_face import LivingFace
@@ -57,6 +58,15 @@ def test_an_animation_plays_the_blood_of_a_track(
     cheek = tuple((face._rest.landmarks[50, ::-1] / 2).astype(int))
     assert frames[1][cheek][1] < frames[0][cheek][1] - 3
     assert dynamic.main(["--animation", str(folder), "--track", str(table)]) == 2
+
+
+def test_a_photograph_takes_the_blood(tmp_path: Path) -> None:
+    photo = tmp_path / "a.png"
+    Image.fromarray(astronaut()[:256, 90:346]).save(photo)
+    draw = dynamic.draw_photo(photo)
+    rest, flushed = draw(0.0, {"flush": 0.0}), draw(1.0, {"flush": 1.0})
+    assert np.array_equal(rest, astronaut()[:256, 90:346])
+    assert (flushed != rest).any()
 
 
 def test_names_that_cannot_be_are_refused(

@@ -17,7 +17,7 @@ from skinnet.appearance._dynamic_file import SHIPPED
 from skinnet.appearance._local_statistics import measure_local
 from skinnet.errors import InputError
 from skinnet.images import find_faces
-from skinnet.inference import Decomposer
+from skinnet.inference import Decomposer, Decomposition
 
 SIDE, SIZE = 64, 32
 STATES = (
@@ -271,7 +271,7 @@ def test_arrays_that_do_not_match_are_refused(
         DynamicModel.load(tmp_path / "a.npz")
 
 
-def test_photographs_take_a_state(model: DynamicModel) -> None:
+def test_photographs_take_a_state(model: DynamicModel, tmp_path: Path) -> None:
     photo, decomposer = astronaut()[:256, 90:346], Decomposer()
     change = pickle.loads(pickle.dumps(model.change({"flush": 1.0})))
     flushed = decomposer.edit(photo, state=change)
@@ -280,6 +280,10 @@ def test_photographs_take_a_state(model: DynamicModel) -> None:
     assert redness[1][cheek] - redness[0][cheek] > 5
     assert np.array_equal(flushed[:20], photo[:20])
     assert np.array_equal(decomposer.edit(photo, state=model.change({"flush": 0.0})), photo)
+    face = decomposer(photo)
+    face.save(tmp_path / "face.npz")
+    for one in (face, Decomposition.load(tmp_path / "face.npz")):
+        assert np.array_equal(one.edit(state=change), flushed)
     both = decomposer.edit(photo, hemoglobin=0.5, state=change)
     assert not np.array_equal(both, flushed)
 

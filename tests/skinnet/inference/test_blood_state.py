@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from skinnet.errors import InputError
-from skinnet.images import Box, Face
+from skinnet.images import Box
 from skinnet.inference._blood_state import check_state, place_state
 
 
@@ -33,9 +33,8 @@ def test_what_is_no_state_is_refused() -> None:
 
 def test_landmarks_are_those_of_the_map() -> None:
     landmarks = np.full((478, 2), 50, np.float32)
-    face = Face(Box(0, 0, 80, 80), 0.0, 1.0, landmarks)
     blood = np.full((1, 8, 8), 0.05, np.float32)
     outputs = {"hemoglobin": blood, "mask": np.ones_like(blood)}
-    placed = place_state(Doubled(), outputs, face, Box(10, 10, 90, 90), 0.08)
+    placed = place_state(Doubled(), outputs, landmarks, Box(10, 10, 90, 90), 0.08)
     assert placed.shape == (1, 8, 8)
     assert (placed[..., :4] == np.float32(0.05)).all() and (placed[..., 4:] == 0.08).all()
