@@ -316,6 +316,9 @@ class DynamicModel:
         Args:
             path: A file that `save` wrote; None for the shipped model.
 
+        Returns:
+            The model, bit by bit.
+
         Raises:
             InputError: The file is missing, damaged or of another kind.
         """
