@@ -21,7 +21,7 @@ from skinnet.appearance.dynamic import _WINDOW
 from skinnet.errors import InputError
 from train.dynamic.charted_faces import ChartedFaces, chart_faces
 from train.dynamic.sequences import TrueModel, sample_sequence
-from train.dynamic.state_patterns import PATTERNS, STATES, STRETCH_SOURCE, draw_pattern
+from train.dynamic.state_patterns import ORIGIN, PATTERNS, STATES, STRETCH_SOURCE, draw_pattern
 from train.dynamic.strains import draw_strains
 from train.synthetic.bodies.ict_model import read_ict_model
 
@@ -107,7 +107,7 @@ def fit_model(truth: TrueModel, faces: ChartedFaces, frames: int, seed: int) -> 
         landmarks=faces.landmarks,
         seconds=dict(zip(truth.names, truth.seconds.tolist(), strict=True)),
         states={name: parts for name, parts in states.items() if parts},
-        sources=sources | {"expressions": STRETCH_SOURCE},
+        sources=sources | {"expressions": STRETCH_SOURCE, "origin": ORIGIN},
     )
     return replace(model, mean=_round(model.mean), spread=_round(model.spread, _SPREAD_STEP))
 

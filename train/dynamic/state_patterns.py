@@ -139,6 +139,12 @@ STRETCH_SOURCE = (
 )
 
 
+ORIGIN = (
+    "python -m train.dynamic, from synthetic faces and the places that the sources name; no "
+    "photograph, scan or measured face is in it. MIT licence, as the code"
+)
+
+
 def draw_pattern(
     pattern: Pattern, landmarks: Float[np.ndarray, "478 2"], size: int
 ) -> tuple[Chart, Chart]:

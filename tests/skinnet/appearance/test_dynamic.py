@@ -80,7 +80,7 @@ def fitted() -> DynamicModel:
 
 def test_it_has_the_named_states_and_says_where_they_are_from(model: DynamicModel) -> None:
     assert tuple(model.states) == STATES
-    assert {"flush", "pallor", "exertion"} <= {*model.sources}
+    assert {"flush", "pallor", "exertion", "expressions", "origin"} <= {*model.sources}
     assert model.errors["rmse"] < model.errors["rest_rmse"] / 2
     assert "flush" in repr(model)
 
