@@ -60,7 +60,8 @@ class DynamicModel:
 
     Source:
         J. Jimenez et al., A practical appearance model for dynamic facial color, ACM Transactions
-        on Graphics 29 (SIGGRAPH Asia), 2010.
+        on Graphics 29 (SIGGRAPH Asia), 2010. Section 7 of Alotaibi & Smith (2017) names such models
+        as future work.
 
     Example:
         >>> model = DynamicModel.load()
