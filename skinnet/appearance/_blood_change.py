@@ -15,7 +15,7 @@ _LEAST = 1e-4
 _MOST_CHANGE, _MOST_DETAIL = 2.0, 1.5
 """Largest log change of the local mean, and largest log ratio to it that is stretched."""
 
-_LEAST_SPREAD = -0.95
+_LEAST_SPREAD, _MOST_SPREAD = -0.95, 5.0
 
 Fields = NDArray[np.floating]
 
@@ -108,7 +108,7 @@ def stretch(
         local, _ = measure_local(logs, skin, sigma)
         detail = np.clip(logs - local, -_MOST_DETAIL, _MOST_DETAIL)
     moved = np.clip(mean, -_MOST_CHANGE, _MOST_CHANGE)
-    change = moved + np.maximum(spread, _LEAST_SPREAD) * detail
+    change = moved + np.clip(spread, _LEAST_SPREAD, _MOST_SPREAD) * detail
     changed = hemoglobin * np.exp(change)
     top = np.maximum(hemoglobin, np.float32(most))
     return np.asarray(np.minimum(changed, top), np.float32)

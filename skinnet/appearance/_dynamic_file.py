@@ -46,9 +46,9 @@ def read_model(path: Path | None) -> tuple[dict[str, Any], Arrays]:
     try:
         header = {
             "names": tuple(str(name) for name in found["names"]),
-            "states": {str(name): dict(each) for name, each in found["states"].items()},
-            "sources": dict(found["sources"]),
-            "errors": dict(found["errors"]),
+            "states": {name: _read_numbers(each) for name, each in found["states"].items()},
+            "sources": {name: str(source) for name, source in found["sources"].items()},
+            "errors": _read_numbers(found["errors"]),
             "window": float(found["window"]),
         }
         values = {name: np.asarray(arrays[name], np.float32) for name in ARRAYS}
@@ -59,10 +59,19 @@ def read_model(path: Path | None) -> tuple[dict[str, Any], Arrays]:
     return header, values
 
 
+def _read_numbers(record: dict[str, Any]) -> dict[str, int | float]:
+    if not all(isinstance(number, int | float) for number in record.values()):
+        raise ValueError("a number is none")
+    return dict(record)
+
+
 def _is_sound(header: dict[str, Any], arrays: Arrays) -> bool:
     count, size = len(header["names"]), arrays["mean"].shape[-1:]
+    if not count or size < (1,) or not 0 < header["window"] < 1:
+        return False
     shapes = [arrays[name].shape for name in ARRAYS]
     fits = shapes == [(count, *size, *size), (count, *size, *size), (478, 2), (count,)]
     used = {name for each in header["states"].values() for name in each}
+    shares = [share for each in header["states"].values() for share in each.values()]
     finite = all(np.isfinite(each).all() for each in arrays.values())
-    return fits and used <= {*header["names"]} and finite
+    return fits and used <= {*header["names"]} and finite and bool(np.isfinite(shares).all())

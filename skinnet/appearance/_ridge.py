@@ -2,6 +2,7 @@
 
 import numpy as np
 from numpy.typing import NDArray
+from scipy.optimize import lsq_linear
 
 _ROUNDS, _HUBER = 6, 1.345
 """Rounds of reweighting, and Huber's constant: 95 % efficiency for normal errors."""
@@ -52,3 +53,22 @@ def _solve(design: Array, values: Array, weights: Array, ridge: float) -> Array:
     right = np.einsum("fp,fn->pn", weights * values, design)
     solved = np.linalg.solve(squares + ridge * np.eye(names), right[..., None])
     return np.asarray(solved[..., 0].T)
+
+
+def find_amounts(fields: Array, values: Array, ridge: float) -> Array:
+    """Find the amounts from 0 to 1 of fields that explain values.
+
+    Args:
+        fields: [places, names].
+        values: What is measured, [places]; NaN where it is not.
+        ridge: Added to the sum of squares of each field.
+
+    Returns:
+        Amounts, [names].
+    """
+    known, names = np.isfinite(values), fields.shape[1]
+    if not known.any():
+        return np.zeros(names)
+    design = np.concatenate([fields[known], np.sqrt(ridge) * np.eye(names)])
+    wanted = np.concatenate([values[known], np.zeros(names)])
+    return np.asarray(lsq_linear(design, wanted, (0, 1), method="bvls").x).clip(0, 1)

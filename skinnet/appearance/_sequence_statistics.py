@@ -67,7 +67,9 @@ def measure_spreads(rest: Maps, maps: Maps, means: Array, window: float, size: i
 def _take_logs(rest: Maps, one: Maps) -> tuple[Array, Array, Array]:
     """Logarithms of both, and 1 where both are known."""
     weight = (np.isfinite(rest) & np.isfinite(one)).astype(np.float64)
-    before, after = (np.log(np.maximum(np.nan_to_num(each), _LEAST)) for each in (rest, one))
+    before, after = (
+        np.log(np.maximum(np.nan_to_num(each).astype(np.float64), _LEAST)) for each in (rest, one)
+    )
     return before, after, weight
 
 

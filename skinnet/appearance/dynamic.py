@@ -17,7 +17,7 @@ from skinnet.appearance._dynamic_fit import (
     fit_spreads,
     measure_held_out,
 )
-from skinnet.appearance._ridge import fit_places
+from skinnet.appearance._ridge import find_amounts
 from skinnet.appearance._sequence_statistics import measure_means
 from skinnet.appearance._time_course import PULSE, beat, follow, respond
 from skinnet.appearance.blood_sequence import BloodSequence
@@ -279,7 +279,7 @@ class DynamicModel:
             ridge: As of `fit`.
 
         Returns:
-            Amounts over time, from 0 to 1, [frames] each.
+            Amounts over time, from 0 to 1, [frames] each; 0 where nothing is known.
 
         Raises:
             InputError: A coefficient is not known.
@@ -289,8 +289,8 @@ class DynamicModel:
         size = self.mean.shape[-1]
         values = measure_means(sequence.rest, sequence.maps, self.window, size)
         fields = self.mean[chosen].reshape(len(chosen), -1).T.astype(np.float64)
-        amounts = fit_places(fields, values.T, ridge)
-        return {name: np.clip(row, 0, 1) for name, row in zip(names, amounts, strict=True)}
+        amounts = np.array([find_amounts(fields, each, ridge) for each in values])
+        return dict(zip(names, amounts.reshape(-1, len(names)).T, strict=True))
 
     def save(self, path: str | Path) -> None:
         """Write the model to an .npz file, all of it or nothing.

@@ -187,6 +187,18 @@ def test_amounts_are_found_again(fitted: DynamicModel) -> None:
     found = fitted.explain(sequence, ["a", "b"])
     for name, amounts in found.items():
         assert np.abs(amounts - sequence.coefficients[name]).max() < 0.1
+        assert (amounts >= 0).all() and (amounts <= 1).all()
+    sequence.maps[3] = np.nan
+    assert not any(amounts[3] for amounts in fitted.explain(sequence, ["a", "b"]).values())
+
+
+def test_flush_and_pallor_do_not_cancel(model: DynamicModel) -> None:
+    rest = make_rest(2, 96, 96)
+    maps = np.stack([model.sample(rest, each) for each in ({}, {"flush": 0.6}, {"pallor": 0.4})])
+    sequence = BloodSequence(rest, maps, np.arange(3.0), {})
+    found = model.explain(sequence, ["flush", "pallor"])
+    assert found["flush"].tolist() == pytest.approx([0, 0.6, 0], abs=0.05)
+    assert found["pallor"].tolist() == pytest.approx([0, 0, 0.4], abs=0.05)
 
 
 def test_time_brings_lag_and_pulse(model: DynamicModel, rest: np.ndarray) -> None:
@@ -261,6 +273,9 @@ def test_files_that_are_none_are_refused(fitted: DynamicModel, tmp_path: Path) -
         {"landmarks": np.zeros((3, 2), np.float32)},
         {"seconds": np.array([np.nan, 0], np.float32)},
         {"states": {"c": {"c": 1.0}}},
+        {"states": {"c": {"a": float("nan")}}},
+        {"window": float("inf")},
+        {"names": ()},
     ],
 )
 def test_arrays_that_do_not_match_are_refused(
