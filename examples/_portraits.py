@@ -1,5 +1,7 @@
 """Rendered portraits of people whose pigments are known, in one soft light."""
 
+from collections.abc import Mapping
+from functools import cache
 from pathlib import Path
 from typing import NamedTuple
 
@@ -11,7 +13,7 @@ from skinnet.images import resize, to_uint8
 from skinnet.mesh import Mesh
 from skinnet.physics import SkinDecoder
 from skinnet.render import Scene
-from train.synthetic.bodies.ict_model import read_ict_model
+from train.synthetic.bodies.ict_model import IctModel, read_ict_model
 from train.synthetic.bodies.labelled_mesh import LabelledMesh
 from train.synthetic.casts.head_cast import cast_view
 from train.synthetic.photography.renderer import render
@@ -79,8 +81,7 @@ def render_portrait(sitter: Sitter, size: int, ict: Path | None) -> Portrait:
     Returns:
         The portrait.
     """
-    head = _cast_head(sitter, SUPERSAMPLING * size, ict)
-    scene = _compose(head, _paint_face(sitter.face), sitter.head)
+    scene = compose_portrait(sitter, SUPERSAMPLING * size, ict)
     batch = render(map_tensors(lambda value: value[None], scene), SkinDecoder(), "val")
     photo = to_uint8(batch.photograph[0].movedim(0, -1).numpy())
     assert batch.truth is not None
@@ -89,14 +90,38 @@ def render_portrait(sitter: Sitter, size: int, ict: Path | None) -> Portrait:
     return Portrait(resize(photo, size, size), *means)
 
 
-def _cast_head(sitter: Sitter, size: int, ict: Path | None) -> HeadBuffers:
+def compose_portrait(
+    sitter: Sitter, size: int, ict: Path | None, expression: Mapping[str, float] | None = None
+) -> SceneParameters:
+    """Compose the portrait of a person.
+
+    Args:
+        sitter: The person.
+        size: Side of the renderer's picture in pixels.
+        ict: ICT-FaceKit as an .npz; None: a procedural head.
+        expression: Weights of ICT-FaceKit's shapes; None: a mild one.
+    """
+    head = _cast_head(sitter, size, ict, expression)
+    return _compose(head, _paint_face(sitter.face), sitter.head)
+
+
+def _cast_head(
+    sitter: Sitter, size: int, ict: Path | None, expression: Mapping[str, float] | None
+) -> HeadBuffers:
     rng = np.random.default_rng([1, sitter.head])
     head: LabelledMesh = (
-        make_procedural_head(rng) if ict is None else make_ict_head(read_ict_model(ict), rng)
+        make_procedural_head(rng)
+        if ict is None
+        else make_ict_head(_read_ict_model(ict), rng, expression=expression)
     )
     angles = np.array([0.03, sitter.yaw, 0.0])
     view = make_view(Framing(angles, 0.7, np.array([0.0, 0.02]), 9.0, False), np.zeros(3), size)
     return cast_view(head, Scene(Mesh(head.vertices, head.triangles)), view).to_buffers()
+
+
+@cache
+def _read_ict_model(path: Path) -> IctModel:
+    return read_ict_model(path)
 
 
 def _paint_face(seed: int) -> FaceParameters:

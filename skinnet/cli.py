@@ -182,14 +182,20 @@ def _make_parsers() -> dict[str, tuple[str, VerbParser]]:
 
 def _run_photo_verb(verb: str, options: Any) -> int:
     each = _OF_PICTURES[verb]
-    module, _, name = each.run.partition(":")
     try:
-        run: Any = getattr(import_module(module), name)
-        return _BAD_INPUT if run(options) is False else _OK
+        if each.prepare:
+            _find(each.prepare)(options)
+        return _BAD_INPUT if _find(each.run)(options) is False else _OK
     except ModuleNotFoundError as error:
         if verb not in MATERIAL_VERBS:
             raise
         raise _explain_missing(error, "textures", f"skinnet {verb}") from error
+
+
+def _find(place: str) -> Any:
+    """The function at MODULE:NAME."""
+    module, _, name = place.partition(":")
+    return getattr(import_module(module), name)
 
 
 def _wants_help(arguments: list[str]) -> bool:

@@ -1,4 +1,6 @@
+from .blood_sequence import BloodSequence as BloodSequence
 from .colour import SkinColour as SkinColour
+from .dynamic import DynamicModel as DynamicModel
 from .edit import PigmentEdit as PigmentEdit
 from .edit import edit_texture as edit_texture
 from .hybrid import HybridModel as HybridModel
@@ -15,6 +17,8 @@ from .stack import open_stack as open_stack
 from .stack_writer import write_stack as write_stack
 
 __all__ = [
+    "BloodSequence",
+    "DynamicModel",
     "HybridModel",
     "JointModel",
     "LinearModel",

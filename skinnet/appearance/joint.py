@@ -9,7 +9,7 @@ import torch
 from jaxtyping import Float
 from torch import Tensor, nn
 
-from skinnet.appearance import _model_arrays
+from skinnet.appearance import _array_file, _model_arrays
 from skinnet.appearance._feature_blocks import ArrayBlocks
 from skinnet.appearance._principal import (
     PrincipalComponents,
@@ -186,7 +186,7 @@ class JointModel(nn.Module):
         }
         arrays = {name: getattr(statistics, name) for name in _model_arrays.STATISTICS}
         arrays["deviations"] = self.deviations
-        _model_arrays.write_arrays(path, type(self).__name__, header, arrays)
+        _array_file.write_arrays(path, type(self).__name__, header, arrays)
 
     @classmethod
     def load(cls, path: Path) -> "JointModel":
@@ -202,20 +202,20 @@ class JointModel(nn.Module):
             InputError: If the file is missing, damaged or of another kind.
         """
         names = (*_model_arrays.STATISTICS, "deviations")
-        header, arrays = _model_arrays.read_arrays(path, cls.__name__, names)
+        header, arrays = _array_file.read_arrays(path, cls.__name__, names)
         statistics = _model_arrays.build_statistics(path, header, arrays)
         deviations = arrays["deviations"]
         if deviations.ndim != 1 or deviations.dtype.kind != "f":
-            raise _model_arrays.make_damage_error(path)
+            raise _array_file.make_damage_error(path)
         if not np.isfinite(deviations).all() or len(deviations) > len(statistics.mean.T):
-            raise _model_arrays.make_damage_error(path)
+            raise _array_file.make_damage_error(path)
         try:
             weight = float(header["weight"])
             if not 0 < weight < np.inf:
-                raise _model_arrays.make_damage_error(path)
+                raise _array_file.make_damage_error(path)
             return cls(statistics, deviations, weight)
-        except _model_arrays.ARCHIVE_ERRORS as error:
-            raise _model_arrays.make_damage_error(path) from error
+        except _array_file.ARCHIVE_ERRORS as error:
+            raise _array_file.make_damage_error(path) from error
 
 
 def _balance(

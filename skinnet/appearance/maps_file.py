@@ -6,7 +6,7 @@ from typing import Any
 
 import numpy as np
 
-from skinnet.appearance import _model_arrays
+from skinnet.appearance import _array_file
 from skinnet.appearance.colour import SkinColour
 from skinnet.appearance.skin_texture import SkinTexture
 
@@ -43,7 +43,7 @@ def save_maps(
     """
     arrays = {name: getattr(texture, name) for name in _ARRAYS}
     header = {"name": texture.name, "colour": colour.to_record(), **(origin or {})}
-    _model_arrays.write_arrays(path, _KIND, header, arrays)
+    _array_file.write_arrays(path, _KIND, header, arrays)
 
 
 def load_maps(path: Path) -> tuple[SkinTexture, SkinColour]:
@@ -58,7 +58,7 @@ def load_maps(path: Path) -> tuple[SkinTexture, SkinColour]:
     Raises:
         InputError: If the file is missing, damaged or of another kind.
     """
-    header, arrays = _model_arrays.read_arrays(path, _KIND, _ARRAYS)
+    header, arrays = _array_file.read_arrays(path, _KIND, _ARRAYS)
     try:
         colour = SkinColour.from_record(header["colour"])
         f_mel, f_blood, offset = (np.asarray(arrays[name], np.float32) for name in _ARRAYS[:3])
@@ -66,7 +66,7 @@ def load_maps(path: Path) -> tuple[SkinTexture, SkinColour]:
         square = (len(mask), len(mask))
         shapes = [part.shape for part in (f_mel, f_blood, offset, mask)]
         if shapes != [square, square, (*square, 3), square]:
-            raise _model_arrays.make_damage_error(path)
+            raise _array_file.make_damage_error(path)
         return SkinTexture(f_mel, f_blood, offset, mask.astype(bool), str(path)), colour
-    except _model_arrays.ARCHIVE_ERRORS as error:
-        raise _model_arrays.make_damage_error(path) from error
+    except _array_file.ARCHIVE_ERRORS as error:
+        raise _array_file.make_damage_error(path) from error

@@ -18,6 +18,7 @@ from skinnet.images._kind import Kind
 from skinnet.images._mark import EDITED, Mark
 from skinnet.images._walk import Found, PassedOver, Walk, walk
 from skinnet.images._write import check_quality, find_format, write_picture
+from skinnet.inference._blood_state import check_state
 from skinnet.inference._edit_mask import read_edit_mask
 from skinnet.inference._edit_place import STANDARD_OUTPUT, EditPlace, Output
 from skinnet.inference._edited import Edited
@@ -64,6 +65,7 @@ class _EditRun:
             faces=self.options.faces,
             region=self.options.region,
             capture=known,
+            state=self.options.state,
         )
         if np.array_equal(edited.picture.pixels, picture.as_colour().pixels):
             raise InputError(self._describe_no_change(source.name))
@@ -80,7 +82,7 @@ class _EditRun:
         masked = "" if self.mask is None else " where the mask is not black"
         return (
             f"No pixel of {name} changes, and nothing is written: no skin that can be edited was "
-            f"found in it{masked}, or the factors are too near 1."
+            f"found in it{masked}, or what is asked for is too little."
         )
 
     def _write(
@@ -131,6 +133,7 @@ class _EditRun:
             "format": wanted.name,
             "quality": self.options.quality if wanted.is_lossy else None,
             "factors": self.factors,
+            "states": {} if self.options.state is None else dict(self.options.state.amounts),
             "mask": None if mask is None else str(mask),
             "faces_found": edited.faces_found,
             "faces": [face.to_json() for face in edited.faces],
@@ -186,11 +189,12 @@ def _check(options: argparse.Namespace) -> None:
     """Refuse what can be refused before any photograph is read."""
     check_choice(options.faces)
     check_factors(melanin=options.melanin, hemoglobin=options.hemoglobin)
-    if options.melanin == options.hemoglobin == 1:
+    check_state(options.state, options.region)
+    if options.melanin == options.hemoglobin == 1 and options.state is None:
         # A mere copy would replace an earlier edit of the photograph.
         raise InputError(
-            "Nothing is edited with factors of 1; give --melanin X or --hemoglobin X, such as "
-            "--melanin 1.5."
+            "Nothing is edited with factors of 1; give --melanin X, --hemoglobin X or --state NAME "
+            "AMOUNT, such as --melanin 1.5."
         )
     if options.quality is not None:
         check_quality(options.quality)

@@ -9,6 +9,7 @@ from numpy.typing import NDArray
 from skinnet.errors import InputError
 from skinnet.images.photograph import read_picture
 from skinnet.images.picture import Picture
+from skinnet.inference._blood_state import BloodState, check_state
 from skinnet.inference._capture_inputs import CaptureLike
 from skinnet.inference._face_choice import FaceChoice
 from skinnet.inference._image_list import ImageLike, is_many, locate_errors, name_all, name_image
@@ -33,6 +34,7 @@ class PhotoEditor(SubjectReader):
         region: Region = "face",
         capture: CaptureLike | None = None,
         mask: NDArray[Any] | None = None,
+        state: BloodState | None = None,
     ) -> NDArray[np.uint8]: ...
 
     @overload
@@ -48,6 +50,7 @@ class PhotoEditor(SubjectReader):
         region: Region = "face",
         capture: CaptureLike | None = None,
         mask: NDArray[Any] | None = None,
+        state: BloodState | None = None,
     ) -> list[NDArray[np.uint8]]: ...
 
     def edit(
@@ -62,6 +65,7 @@ class PhotoEditor(SubjectReader):
         region: Region = "face",
         capture: CaptureLike | None = None,
         mask: NDArray[Any] | None = None,
+        state: BloodState | None = None,
     ) -> NDArray[np.uint8] | list[NDArray[np.uint8]]:
         """Multiply the pigments of a photograph, or of several.
 
@@ -79,6 +83,8 @@ class PhotoEditor(SubjectReader):
             capture: What is known of the light and the camera; None: nothing.
             mask: What to edit of the skin, [H, W] as the upright photograph: bool, floats in
                 [0, 1], or uint8 or uint16 whose largest value is 1. Half of it is half of the edit.
+            state: What blood does, before it is multiplied, such as
+                `DynamicModel.load().change({"flush": 0.7})` of `skinnet.appearance`.
 
         Returns:
             The edited photograph, uint8 sRGB [H, W, 3]; of several, a list of them, in order.
@@ -102,13 +108,18 @@ class PhotoEditor(SubjectReader):
             picture = read_picture(given, name)
             name = name_image(given, name) or "the image"
             return self._edit(
-                *(picture, factors, mask, name), faces=faces, region=region, capture=capture
+                *(picture, factors, mask, name),
+                faces=faces,
+                region=region,
+                capture=capture,
+                state=state,
             ).picture.srgb
         if mask is not None:
             raise InputError(
                 "A mask belongs to one image; edit them one by one to give each its own."
             )
         check_factors(**factors)
+        check_state(state, region)
         edited = []
         for one, called, place in name_all(given, name):
             with locate_errors(one, called, place):
@@ -119,6 +130,7 @@ class PhotoEditor(SubjectReader):
                         faces=faces,
                         region=region,
                         capture=capture,
+                        state=state,
                     ).picture.srgb
                 )
         return edited
@@ -135,6 +147,7 @@ class PhotoEditor(SubjectReader):
         region: Region = "face",
         capture: CaptureLike | None = None,
         mask: NDArray[Any] | None = None,
+        state: BloodState | None = None,
     ) -> Picture:
         """Multiply the pigments of a picture, which keeps its depth, colour space and alpha.
 
@@ -149,6 +162,8 @@ class PhotoEditor(SubjectReader):
             capture: What is known of the light and the camera; None: nothing.
             mask: What to edit of the skin, [H, W] as the upright photograph: bool, floats in
                 [0, 1], or uint8 or uint16 whose largest value is 1. Half of it is half of the edit.
+            state: What blood does, before it is multiplied, such as
+                `DynamicModel.load().change({"flush": 0.7})` of `skinnet.appearance`.
 
         Returns:
             The edited picture. Pixels that are not skin keep their stored values.
@@ -173,4 +188,5 @@ class PhotoEditor(SubjectReader):
             faces=faces,
             region="skin" if whole_image else region,
             capture=capture,
+            state=state,
         ).picture

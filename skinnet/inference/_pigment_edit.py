@@ -46,12 +46,15 @@ class EditSource(NamedTuple):
             capture [1, ...]; None if they are not those of the photograph as it was given, whose
             tone curve a profile has undone.
         models: What has read it; None for the shipped models.
+        landmarks: Columns and rows of the face's landmarks in the photograph, [478, 2]; None if no
+            face was looked for, or they are not kept.
     """
 
     picture: Picture
     crop: HeadCrop
     outputs: Arrays | None
     models: ModelPair | None = None
+    landmarks: NDArray[np.float32] | None = None
 
 
 def select_edited(encoder_outputs: Arrays) -> dict[str, NDArray[np.float32]]:
@@ -85,6 +88,7 @@ def edit_in_place(
     factors: Mapping[str, float],
     decoder: OnnxModel,
     share: NDArray[Any] | None = None,
+    blood: NDArray[np.float32] | None = None,
 ) -> ColourMeans:
     """Multiply the pigments of one subject in the pixels of a picture.
 
@@ -96,12 +100,14 @@ def edit_in_place(
         factors: Factors of melanin and hemoglobin.
         decoder: The skin model.
         share: How much of the edit each pixel of the picture gets, [H, W]; None for all.
+        blood: Hemoglobin [1, h, w] in another state, which the factor multiplies; None for what
+            was read.
 
     Returns:
         The mean colours before and after.
     """
     box, shape = crop.box, colour.pixels.shape
-    change = _compute_change(decoder, outputs, factors)
+    change = _compute_change(decoder, outputs, factors, blood)
     fade = crop.fade(change.loss.shape[:2], shape)
     mask = skin if fade.min() == 1 else skin * resize(fade, box.width, box.height)
     alpha = None if colour.alpha is None else colour.alpha[box.slices]
@@ -111,7 +117,10 @@ def edit_in_place(
 
 
 def _compute_change(
-    decoder: OnnxModel, outputs: Arrays, factors: Mapping[str, float]
+    decoder: OnnxModel,
+    outputs: Arrays,
+    factors: Mapping[str, float],
+    blood: NDArray[np.float32] | None = None,
 ) -> ColourChange:
     plain = np.ones_like(outputs["melanin"])
     bare = dict(outputs) | {
@@ -119,8 +128,9 @@ def _compute_change(
         "specular": np.zeros_like(plain),
         "offset": np.zeros((*plain.shape, 3), np.float32),
     }
+    levels = bare if blood is None else bare | {"hemoglobin": blood}
     scaled = {
-        name: np.clip(bare[name] * np.float32(factor), 0, 1) for name, factor in factors.items()
+        name: np.clip(levels[name] * np.float32(factor), 0, 1) for name, factor in factors.items()
     }
     before, after = (srgb_to_linear(decode(decoder, maps)) for maps in (bare, bare | scaled))
     return compute_change(before, after, outputs["mask"][0])

@@ -13,6 +13,7 @@ from skinnet.images._arguments import check_path
 from skinnet.images._shot import read_shot
 from skinnet.images.faces._face_parts import find_face_parts
 from skinnet.images.picture import Picture
+from skinnet.inference._blood_state import BloodState, check_state, place_state
 from skinnet.inference._capture_inputs import CaptureLike, Inputs, join_captures, name_known
 from skinnet.inference._capture_names import name_camera, name_light
 from skinnet.inference._doubts import list_doubts, list_edit_doubts
@@ -123,7 +124,13 @@ class SubjectReader:
             faces_found=None if subject.faces is None else len(subject.faces),
             face_parts=None if subject.face is None else find_face_parts(photo, subject.face),
             provider=self.encoder.provider,
-            _source=EditSource(picture, subject.crop, select_edited(encoder_outputs), self),
+            _source=EditSource(
+                picture,
+                subject.crop,
+                select_edited(encoder_outputs),
+                self,
+                None if subject.face is None else subject.face.landmarks,
+            ),
         )
 
     def _doubt_white(self, applied: Applied, subject: Subject, name: str, known: Inputs) -> Subject:
@@ -146,9 +153,11 @@ class SubjectReader:
         faces: FaceChoice = "largest",
         region: Region = "face",
         capture: CaptureLike | None = None,
+        state: BloodState | None = None,
     ) -> Edited:
         """Edit a picture by the factors of `edit_picture`, and say what has changed."""
         check_factors(**factors)
+        check_state(state, region)
         name = name or picture.name
         share = None if mask is None else check_edit_mask(mask, picture.pixels.shape, name)
         applied = apply_profile(picture, capture, is_read=False)
@@ -161,7 +170,9 @@ class SubjectReader:
         changed = []
         for subject in subjects:
             subject = self._doubt_white(applied, subject, name, known)
-            means, doubts = self._edit_one(edited, photo, subject, factors, share, name, known)
+            means, doubts = self._edit_one(
+                edited, photo, subject, factors, share, name, known, state
+            )
             changed.append(EditedFace(subject.face_id, subject.crop.box, means))
             notes += doubts
         edited = replace(edited, notes=tuple(dict.fromkeys(notes)))
@@ -177,6 +188,7 @@ class SubjectReader:
         share: NDArray[Any] | None,
         name: str,
         known: Inputs,
+        state: BloodState | None = None,
     ) -> tuple[ColourMeans, tuple[str, ...]]:
         """Edit one subject in the pixels of `colour`. Returns mean colours, and notes."""
         box = subject.crop.box
@@ -187,7 +199,13 @@ class SubjectReader:
         is_white_known = "known_white_balance" in known
         doubts = list_edit_doubts(subject.describe(name), skin, colours, is_white_known)
         outputs = select_edited(encoder_outputs)
-        means = edit_in_place(colour, subject.crop, outputs, skin, factors, self.decoder, share)
+        blood = None
+        if state is not None and subject.face is not None:
+            most = self.encoder.output_info["hemoglobin"].range[1]
+            blood = place_state(state, outputs, subject.face.landmarks, box, most)
+        means = edit_in_place(
+            colour, subject.crop, outputs, skin, factors, self.decoder, share, blood
+        )
         return means, (*note_transparency(alpha, skin, name), *subject.notes, *doubts)
 
     def _read(

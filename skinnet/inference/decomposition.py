@@ -8,6 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 from PIL import Image
 
+from skinnet.inference._blood_state import BloodState
 from skinnet.inference._decomposition.edit import edit_again, get_source
 from skinnet.inference._decomposition.maps import MAP_FILES as MAP_FILES
 from skinnet.inference._decomposition.maps import SKIN_THRESHOLD as SKIN_THRESHOLD
@@ -78,6 +79,7 @@ class Decomposition(SkinReadings):
         hemoglobin: float = 1.0,
         *,
         mask: NDArray[Any] | None = None,
+        state: BloodState | None = None,
     ) -> NDArray[np.uint8]:
         """Multiply the pigments of the photograph that was read, without reading it again.
 
@@ -88,6 +90,7 @@ class Decomposition(SkinReadings):
             melanin: Factor of melanin in [0, 10].
             hemoglobin: Factor of hemoglobin in [0, 10].
             mask: What to edit of the skin, [H, W], as for `Decomposer.edit`; None for all of it.
+            state: What blood does, as for `Decomposer.edit`.
 
         Returns:
             The edited photograph, uint8 sRGB [H, W, 3].
@@ -105,7 +108,7 @@ class Decomposition(SkinReadings):
             >>> bool(same.all())
             True
         """
-        return edit_again(self, {"melanin": melanin, "hemoglobin": hemoglobin}, mask)
+        return edit_again(self, {"melanin": melanin, "hemoglobin": hemoglobin}, mask, state)
 
     def plot(self) -> Image.Image:
         """Draw the panel: the photograph, all maps with their scales, and the reconstruction.

@@ -8,7 +8,7 @@ from typing import Any
 
 import numpy as np
 
-from skinnet.appearance._model_arrays import ARCHIVE_ERRORS
+from skinnet.appearance._array_file import ARCHIVE_ERRORS
 from skinnet.errors import InputError
 from skinnet.files import write_atomically
 from skinnet.files._npz import read_npz

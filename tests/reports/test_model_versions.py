@@ -21,7 +21,7 @@ from safetensors.torch import save_file
 
 from skinnet import Decomposer
 from skinnet._version import __version__
-from skinnet.appearance._model_arrays import read_arrays, write_arrays
+from skinnet.appearance._array_file import read_arrays, write_arrays
 from skinnet.appearance.stack import open_stack
 from skinnet.cli import main
 from skinnet.errors import InputError

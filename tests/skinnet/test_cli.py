@@ -400,7 +400,7 @@ def test_an_edit_that_changes_nothing_keeps_the_one_before(
     capsys.readouterr()
     assert edit(photo, *factors) == 2
     (line,) = capsys.readouterr().err.splitlines()
-    assert line.startswith("skinnet: Nothing is edited with factors of 1; give --melanin X or")
+    assert line.startswith("skinnet: Nothing is edited with factors of 1; give --melanin X, ")
     assert names(tmp_path) == ["a.png", "a_edited.png"]
     assert (tmp_path / "a_edited.png").read_bytes() == before
 

@@ -74,6 +74,15 @@ def add_edit(verb: argparse.ArgumentParser) -> None:
             help=f"factor of {pigment}, from 0 to 10; 1 by default",
         )
     verb.add_argument(
+        "--state",
+        nargs=2,
+        action="append",
+        metavar=("NAME", "AMOUNT"),
+        help="what the blood of a face does, from 0 (at rest) to 1: flush, pallor, exertion, "
+        "smile, frown, surprise, disgust, anger or pulse; may be given several times, and goes "
+        "before --hemoglobin",
+    )
+    verb.add_argument(
         "--mask",
         type=Path,
         metavar="FILE",

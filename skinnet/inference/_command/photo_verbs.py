@@ -20,6 +20,8 @@ class PhotoVerb(NamedTuple):
             takes the parsed options; False means that an input could not be used.
         examples: Commands for its help.
         more: What its help says beyond the summary.
+        prepare: A function, as MODULE:NAME, that completes the parsed options before the verb runs,
+            by what only a room above this one knows; empty for none.
     """
 
     summary: str
@@ -27,6 +29,7 @@ class PhotoVerb(NamedTuple):
     run: str
     examples: Examples
     more: str = ""
+    prepare: str = ""
 
     @property
     def description(self) -> str:
@@ -48,14 +51,16 @@ PHOTO_VERBS = {
         ),
     ),
     "edit": PhotoVerb(
-        "multiply the pigments of photographs: --melanin X, --hemoglobin X, or both",
+        "change the pigments of photographs: --melanin X, --hemoglobin X, --state NAME AMOUNT",
         photo_arguments.add_edit,
         f"{_INFERENCE}._edit_verb:edit",
         (
             ("skinnet edit photo.jpg --melanin 1.5", "tanned, as photo_edited.jpg"),
+            ("skinnet edit photo.jpg --state flush 0.7", "flushed cheeks, nose, ears, forehead"),
             ("skinnet edit photo.jpg --hemoglobin 1.8 --mask cheek.png", "where a mask is white"),
             ("skinnet edit photographs -r --melanin 1.5 -o tanned/", "a folder and its subfolders"),
         ),
+        prepare="skinnet.appearance._state_option:read_states",
     ),
     "person": PhotoVerb(
         "fuse shots of one person by their uncertainty, and check that they agree",

@@ -15,6 +15,7 @@ _EXAMPLES = "examples:\n"
 
 _NOT_A_NUMBER = re.compile(r"argument (.+): invalid (\w+) value: (.+)")
 _NO_VALUE = re.compile(r"argument (.+): expected (?:one|at least one) argument")
+_FEW_VALUES = re.compile(r"argument (.+): expected (\d+) arguments")
 _A_VALUE = re.compile(r"argument (.+): ignored explicit argument (.+)")
 _BOTH = re.compile(r"argument (.+): not allowed with argument (.+)")
 _MISSING = re.compile(r"the following arguments are required: (.+)")
@@ -144,6 +145,8 @@ class VerbParser(argparse.ArgumentParser):
             return f"{found[1]} is {_KINDS.get(found[2], found[2])}; got {found[3]}.{comma}"
         if found := _NO_VALUE.fullmatch(message):
             return f"{found[1]} needs a value, and none was given."
+        if found := _FEW_VALUES.fullmatch(message):
+            return f"{found[1]} needs {self._name_values(found[1], found[2])} after it."
         if found := _A_VALUE.fullmatch(message):
             return f"{found[1]} takes no value; got {found[2]}."
         if found := _BOTH.fullmatch(message):
@@ -151,6 +154,12 @@ class VerbParser(argparse.ArgumentParser):
         if found := _OTHER.fullmatch(message):
             return found[2] if found[2].endswith((".", "?")) else f"{found[1]}: {found[2]}."
         return message if message.endswith((".", "?")) else f"{message}."
+
+    def _name_values(self, flag: str, count: str) -> str:
+        """The names of the values of a flag, as its help shows them."""
+        action = self._option_string_actions.get(flag.partition("/")[0])
+        names = action.metavar if action is not None else None
+        return " and ".join(names) if isinstance(names, tuple) else f"{count} values"
 
     def _describe_input(self, names: str) -> str:
         """What the first missing input is, as its help says it."""

@@ -159,6 +159,8 @@ def _record_source(source: EditSource, arrays: dict[str, NDArray[Any]]) -> dict[
     arrays["photo"] = picture.pixels
     if picture.alpha is not None:
         arrays["alpha"] = picture.alpha
+    if source.landmarks is not None:
+        arrays["landmarks"] = source.landmarks
     outputs = source.outputs or {}
     arrays |= {f"edit_{name}": values for name, values in outputs.items()}
     return {
@@ -169,6 +171,7 @@ def _record_source(source: EditSource, arrays: dict[str, NDArray[Any]]) -> dict[
         "crop": list(source.crop.box),
         "square": None if square is None else list(square),
         "edit": source.outputs is not None,
+        "landmarks": source.landmarks is not None,
         "pixels": [list(picture.pixels.shape), picture.pixels.dtype.name],
     }
 
@@ -191,7 +194,9 @@ def _restore_source(
     square = None if record["square"] is None else TurnedSquare(*record["square"])
     crop = HeadCrop(restore_box(record["crop"], shape), square)
     outputs = _restore_outputs(file) if record["edit"] else None
-    return EditSource(picture, crop, outputs, models)
+    has_landmarks = record.get("landmarks", False)  # files of earlier versions have none
+    landmarks = file.read("landmarks", (478, 2), "float32") if has_landmarks else None
+    return EditSource(picture, crop, outputs, models, landmarks)
 
 
 def _restore_outputs(file: ArrayFile) -> dict[str, NDArray[np.float32]]:

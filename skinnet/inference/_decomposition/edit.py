@@ -8,16 +8,21 @@ import numpy as np
 from numpy.typing import NDArray
 
 from skinnet.errors import InputError
+from skinnet.inference._blood_state import BloodState, check_state, place_state
 from skinnet.inference._decomposition.maps import SkinMaps
 from skinnet.inference._edit_mask import check_edit_mask
 from skinnet.inference._pigment_edit import EditSource, ModelPair, check_factors, edit_in_place
 
 
 def edit_again(
-    maps: SkinMaps, factors: Mapping[str, float], mask: NDArray[Any] | None
+    maps: SkinMaps,
+    factors: Mapping[str, float],
+    mask: NDArray[Any] | None,
+    state: BloodState | None = None,
 ) -> NDArray[np.uint8]:
     """Multiply the pigments, as `Decomposition.edit` describes: uint8 sRGB [H, W, 3]."""
     check_factors(**factors)
+    check_state(state, "face")
     source = get_source(maps)
     if source.outputs is None:
         raise InputError(
@@ -30,8 +35,20 @@ def edit_again(
     edited = replace(colour, pixels=colour.pixels.copy())
     skin = maps.mask[source.crop.box.slices]
     decoder = _find_models(maps, source).decoder
-    edit_in_place(edited, source.crop, source.outputs, skin, factors, decoder, share)
+    blood = None if state is None else _find_blood(maps, source, state)
+    edit_in_place(edited, source.crop, source.outputs, skin, factors, decoder, share, blood)
     return edited.srgb
+
+
+def _find_blood(maps: SkinMaps, source: EditSource, state: BloodState) -> NDArray[np.float32]:
+    """Hemoglobin [1, h, w] in a state."""
+    if source.landmarks is None or source.outputs is None:
+        raise InputError(
+            "A state of blood is laid out by the landmarks of a face, and this decomposition has "
+            "none: it is of skin without a face, or of an earlier version's file."
+        )
+    most = maps.output_info["hemoglobin"].range[1]
+    return place_state(state, source.outputs, source.landmarks, source.crop.box, most)
 
 
 def get_source(maps: SkinMaps) -> EditSource:

@@ -284,3 +284,40 @@ def test_a_mask_without_skin_is_said(
     assert main(["edit", str(tmp_path / "a.png"), "--melanin", "3", *options]) == 2
     assert "was found in it where the mask is not black" in capsys.readouterr().err
     assert names(tmp_path) == ["a.png", "mask.png"]
+
+
+def test_states_are_words_that_are_known(run: Run, tmp_path: Path) -> None:
+    photo = save(tmp_path / "a.png")
+    for words in ((photo, "--state", "flush", "0.7"), ("--state", "flush", "0.7", photo)):
+        code, out, _ = run("edit", *words, "--json")
+        assert code == 0 and json.loads(out)["states"] == {"flush": 0.7}
+    code, out, _ = run("edit", photo, "--json")
+    assert code == 0 and json.loads(out)["states"] == {}
+
+
+@pytest.mark.parametrize(
+    ("words", "sentence"),
+    [
+        (("flus", "0.7"), "There is no state 'flus'; states are flush, pallor, "),
+        (("flush", "1.2"), "The amount of flush is a number from 0"),
+        (("flush", "-1"), "got -1"),
+        (("flush", "much"), "got 'much'. Write it after the name, such as --state flush 0.7."),
+        (("flush", "nan"), "got nan"),
+        (("flush",), "--state needs NAME and AMOUNT after it."),
+        (("flush", ".5", "--state", "flush", ".6"), "--state flush is given twice"),
+        (("flush", ".5", "--region", "skin"), "leave out one of them"),
+    ],
+)
+def test_states_that_cannot_be_are_refused(
+    run: Run, tmp_path: Path, words: tuple[str, ...], sentence: str
+) -> None:
+    photo = save(tmp_path / "a.png")
+    code, _, err = run("edit", photo, "--state", *words)
+    assert code == 2 and sentence in err and names(tmp_path) == ["a.png"]
+
+
+def test_a_state_alone_is_an_edit(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(["edit", "--state", "flush", "0.7"]) == 2
+    assert "edit needs input" in capsys.readouterr().err
+    assert main(["edit", str(tmp_path / "a.png"), "--melanin", "1"]) == 2
+    assert "--state NAME AMOUNT" in capsys.readouterr().err

@@ -1,5 +1,7 @@
 """Bald heads of ICT-FaceKit, with expressions and a random gaze."""
 
+from collections.abc import Mapping
+
 import numpy as np
 from jaxtyping import Float
 
@@ -17,7 +19,10 @@ _NECK_HEIGHT = -1.5
 
 
 def make_bald_ict(
-    model: IctModel, rng: np.random.Generator, variety: Variety = "mild"
+    model: IctModel,
+    rng: np.random.Generator,
+    variety: Variety = "mild",
+    expression: Mapping[str, float] | None = None,
 ) -> tuple[LabelledMesh, Neck]:
     """Make a bald head of a random person with an expression.
 
@@ -25,6 +30,7 @@ def make_bald_ict(
         model: ICT-FaceKit's.
         rng: Random numbers.
         variety: Which kind of expressions.
+        expression: Weights of shapes by their names, others are 0; None: they are sampled.
 
     Returns:
         The head, and where its neck ends.
@@ -33,6 +39,8 @@ def make_bald_ict(
     gaze = rng.normal(0, (0.10, 0.06)).clip(-0.2, 0.2)
     sample = sample_expression if variety == "mild" else sample_any_expression
     weights = sample(model.names, gaze, rng)
+    if expression is not None:
+        weights = np.array([expression.get(name, 0.0) for name in model.names])
     shape = model.mean + np.tensordot(person.astype(np.float32), model.identities, 1)
     active = np.flatnonzero(weights)
     moved = np.tensordot(weights[active].astype(np.float32), model.expressions[active], 1)

@@ -1,5 +1,7 @@
 """Whole synthetic heads: bald ones, completed by hair, glasses and shoulders."""
 
+from collections.abc import Mapping
+
 import numpy as np
 
 from train.synthetic.bodies.bald_ict import make_bald_ict
@@ -20,10 +22,13 @@ def make_procedural_head(rng: np.random.Generator, variety: Variety = "mild") ->
 
 
 def make_ict_head(
-    model: IctModel, rng: np.random.Generator, variety: Variety = "mild"
+    model: IctModel,
+    rng: np.random.Generator,
+    variety: Variety = "mild",
+    expression: Mapping[str, float] | None = None,
 ) -> LabelledMesh:
     """Make a whole head of ICT-FaceKit with an expression and a gaze; half are mirrored."""
-    bald, neck = make_bald_ict(model, rng, variety)
+    bald, neck = make_bald_ict(model, rng, variety, expression)
     if rng.random() < 0.5:
         bald, neck = mirror(bald), neck._replace(x=-neck.x)
     return complete_head(bald, neck, rng, variety)

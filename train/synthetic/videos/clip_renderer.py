@@ -144,6 +144,19 @@ class ClipRenderer:
         for time in self.times.tolist():
             yield ClipFrame(time, self.render(time), self.true_change(time))
 
+    def true_hemoglobin(self, time: float) -> Float[np.ndarray, "h w"]:
+        """Volume fractions at a time over the head as it is cast; NaN where no skin is seen.
+
+        `landmarks` are those of the face in that picture, in its pixels.
+        """
+        seen = (self._skin[0, 0].numpy() > 0) & (self._cover[0, 0].numpy() < 0.5)
+        return np.where(seen, self._hemoglobin * np.exp(self._find_change(time)), np.nan)
+
+    @property
+    def chart(self) -> Float[np.ndarray, "h w 2"]:
+        """Azimuth and elevation in radians of each pixel of the head as it is cast."""
+        return self.scene.head.chart[0].float().numpy()
+
     def true_change(self, time: float) -> Float[np.ndarray, "regions"]:
         """Log ratio of the mean hemoglobin of the regions at a time to that of the face at rest."""
         factor = np.exp(self._find_change(time))
@@ -230,7 +243,7 @@ class ClipRenderer:
         face = max(faces, key=lambda each: each.box.width)
         side = self._skin.shape[-1]
         scale = side / self.settings.size
-        landmarks = face.landmarks * scale
+        self.landmarks = landmarks = face.landmarks * scale
         mouth = np.stack([*landmarks[list(_MOUTH)], landmarks[BROW]])
         self._mouth = (mouth.astype(np.float64), face.box.width * scale)
         size, box = self.settings.size, face.box

@@ -4,6 +4,7 @@ import re
 import shlex
 import subprocess
 import sys
+from importlib import import_module
 
 import pytest
 
@@ -36,6 +37,13 @@ def test_help_ends_with_examples(verb: str) -> None:
     shown = re.findall(r"^  (.*skinnet .+)$", text.partition("examples:\n")[2], re.MULTILINE)
     assert shown == [command for each, command in EXAMPLES if each == verb]
     assert 2 <= len(shown) <= 5
+
+
+@pytest.mark.parametrize("verb", PHOTO_VERBS)
+def test_its_functions_are_there(verb: str) -> None:
+    for place in filter(None, (PHOTO_VERBS[verb].run, PHOTO_VERBS[verb].prepare)):
+        module, _, name = place.partition(":")
+        assert callable(getattr(import_module(module), name))
 
 
 @pytest.mark.parametrize("verb", PHOTO_VERBS)

@@ -1,0 +1,1 @@
+"""The fit of the dynamic model that the library ships."""
