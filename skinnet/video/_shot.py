@@ -5,29 +5,26 @@ from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy import ndimage
 
 from skinnet.errors import InputError
 from skinnet.images.faces._face_place import place_face, to_box
 from skinnet.images.faces.face import Face
 from skinnet.inference._uncertainty import PIGMENTS
 from skinnet.inference.decomposer import Decomposer
-from skinnet.inference.full_resolution._colour_table import ColourTable, tabulate_colours
+from skinnet.inference.full_resolution._colour_table import tabulate_colours
+from skinnet.video._baseline import Baseline
 from skinnet.video._blood_response import BloodResponse
+from skinnet.video._change_map import ChangeMap
+from skinnet.video._change_scale import find_scale_sd
 from skinnet.video._face_follower import Followed
-from skinnet.video._frame_colours import BRIGHTEST, DARKEST, FrameColours
+from skinnet.video._frame_colours import FrameColours
+from skinnet.video._frame_noise import FrameNoise
 from skinnet.video._look_series import LookSeries, PooledMelanin
-from skinnet.video._noise import RunningNoise
 from skinnet.video._readings import HIDDEN, LOST, READ, Reading, make_blank
 from skinnet.video._regions import FACE, NAMES
 from skinnet.video._resting_maps import Look, RestingMaps, pool_looks, read_look
-from skinnet.video._slow_errors import SlowErrors
-from skinnet.video._texture_space import SIZE, Points, TextureSpace, sample
+from skinnet.video._texture_space import Points, TextureSpace, sample
 from skinnet.video._tone_doubt import ToneDoubt
-
-_LEAST_TEXELS = 12
-_LEAST_SHARE = 0.4
-"""Least part of a region's skin at rest that is seen in a frame for it to be read."""
 
 _MOST_BUFFERED = 1200
 """Frames of the baseline that are kept at most; later ones of it are left out."""
@@ -39,37 +36,7 @@ and by how much it grows with the bend of the mesh."""
 _GLOSS_BY_SHADING = 0.5
 """How much gloss may change with shading, where the head turns in the light."""
 
-_CHROMA_BY_BEND = 0.05
-"""Standard deviation of log colour for each unit of bend, by which the mesh slides on the skin."""
-
-_SCALE_SD, _SCALE_BY_TONE, _MOST_SCALE_SD = 0.22, (0.10, 0.30), 0.45
-"""Relative standard deviation of a change for a melanin of .1, by how much it grows with the
-logarithm of less and of more melanin, and its most. Skins differ in what else they are made of (see
-`_blood_response._ANSWER`), tone curves scale colours, and melanin hides blood. It is that of the
-slopes of read over true changes in 28 synthetic clips, which are not those of the benchmark. What
-the uncertainty of the resting maps adds is computed."""
-
-_MOST_FACTOR = 25.0
-"""Largest factor on the noise by the spread of the baseline; more is a movement."""
-
-_BLUR = 2.5
-"""Standard deviation, in texels, over which the map of changes is smoothed."""
-
 Array = NDArray[np.float64]
-
-
-class _Compared(NamedTuple):
-    """A frame beside the baseline.
-
-    Attributes:
-        ratios: Log ratios of the regions' linear RGB, [regions, 3]; NaN if hidden.
-        texels: Log ratios of the texels, [texels, 3].
-        seen: Which texels are seen, [texels].
-    """
-
-    ratios: Array
-    texels: NDArray[np.float32]
-    seen: NDArray[np.bool_]
 
 
 class _Buffered(NamedTuple):
@@ -202,13 +169,13 @@ class Shot:
             self._add_melanin(time, self._read_look(frame, time, followed.landmarks))
 
     def _add_melanin(self, time: float, look: Look) -> None:
-        face = self._regions[NAMES.index(FACE)]
+        face = self._base.regions[NAMES.index(FACE)]
         share = float(look.maps["mask"][face].mean()) if face.any() else 0.0
         self._series.add(time, look.maps["melanin"], share)
 
     def pool_melanin(self) -> PooledMelanin:
         """Pool the melanin of all looks of the shot."""
-        face = self._regions[NAMES.index(FACE)]
+        face = self._base.regions[NAMES.index(FACE)]
         return self._series.pool(face if face.any() else self.space.inside[self.space.inside])
 
     def _begin(self, waiting: list[_Buffered]) -> None:
@@ -221,118 +188,44 @@ class Shot:
             for one in waiting
             if one.colours is not None and begin <= one.time - self.start <= end
         ] or [one.colours for one in waiting if one.colours is not None]
-        self._set_base(chosen)
+        regions = self.space.regions[:, self.space.inside]
+        self._base = Baseline(chosen, self.rest.skin, regions)
+        self._learn(waiting)
+
+    def _learn(self, waiting: list[_Buffered]) -> None:
+        """Learn melanin, the answer to blood, and the noise, before the first frame is solved."""
+        assert self.rest is not None
         for time, look in zip(self._times, self._looks, strict=True):
             self._add_melanin(time, look)
         self._series.start(self._times[-1])
         tops = tuple(self._decomposer.encoder.output_info[name].range[1] for name in PIGMENTS)
         table = tabulate_colours(self._decomposer.decoder, self.rest.capture, (tops[0], tops[1]))
-        self._response = BloodResponse(table, self.rest, self._regions)
-        self._scale_sd = self._find_scale_sd(table)
+        regions = self._base.regions
+        self._response = BloodResponse(table, self.rest, regions)
         self._direction = self._response.differentiate()
+        at_rest = self.resting_melanin(), self.resting_blood()
+        self._scale_sd = find_scale_sd(table, self.rest, regions, *at_rest)
         self._resting = self.space.fill(self.rest.hemoglobin)
-        self._texel_weights = self._weigh_texels(table)
-        self._noise = RunningNoise(len(NAMES))
-        self._slow = SlowErrors(self._regions, self.space.inside)
-        self._warm_up(waiting)
-
-    def _find_scale_sd(self, table: ColourTable) -> Array:
-        """Relative standard deviation of changes, [regions], by that of the resting maps.
-
-        Where more blood is read than there is, the model's colours answer more to a change of its
-        logarithm, and the change that is read is too small.
-        """
-        assert self.rest is not None
-        darkness = np.log(np.maximum(self.resting_melanin()[0], 1e-3) / 0.1)
-        by_tone = np.where(darkness < 0, -_SCALE_BY_TONE[0], _SCALE_BY_TONE[1]) * darkness
-        own = np.minimum(_SCALE_SD + by_tone, _MOST_SCALE_SD)
-        variance = own**2
-        for pigment, (_, sds) in enumerate((self.resting_melanin(), self.resting_blood())):
-            slopes = []
-            for way in (-1, 1):
-                factors = np.ones((len(NAMES), 2), np.float32)
-                factors[:, pigment] = np.exp(way * sds)
-                slopes.append(
-                    BloodResponse(table, self.rest, self._regions, factors).measure_chroma()
-                )
-            variance += (np.log(slopes[1] / slopes[0]) / 2) ** 2
-        return np.asarray(np.sqrt(variance))
-
-    def _set_base(self, chosen: list[NDArray[np.float32]]) -> None:
-        assert self.rest is not None
-        stack = np.stack(chosen)
-        level = np.nanmedian(np.nanmean(stack, 2), 1)[:, None, None]
-        base = np.nanmean(stack * (np.median(level) / level), 0)
-        self._base = base.astype(np.float32)
-        usable = self.rest.skin & np.isfinite(base).all(1)
-        usable &= (base.max(1) < BRIGHTEST) & (base.min(1) > DARKEST)
-        self._usable = usable
-        regions = self.space.regions[:, self.space.inside]
-        self._regions = regions & usable
-        self._areas = self._regions.sum(1)
-        area = np.maximum(self._areas, 1)[:, None]
-        self._levels = self._regions @ np.where(usable[:, None], base, 0).astype(np.float64) / area
-
-    def _warm_up(self, waiting: list[_Buffered]) -> None:
-        """Learn the noise from the baseline, before its first frame is solved.
-
-        Compression holds errors over many frames, which differences do not see; the spread of the
-        baseline does.
-        """
-        rows = []
-        for one in waiting:
-            if one.colours is not None:
-                compared = self._compare(one.colours)
-                self._learn(one.time, compared)
-                rows.append(compared.ratios)
-        self._noise_factor = _compare_spreads(np.stack(rows), self._noise.covariance)
-
-    def _learn(self, time: float, compared: _Compared) -> None:
-        """Learn noise and slow errors from a frame."""
-        self._noise.add(time, compared.ratios)
-        self._slow.add(time, compared.texels, compared.seen)
-
-    def _compare(self, colours: NDArray[np.float32]) -> _Compared:
-        """Compare a frame's colours with the baseline."""
-        seen = np.isfinite(colours).all(1) & (colours.max(1) < BRIGHTEST)
-        seen &= colours.min(1) > 0
-        with np.errstate(divide="ignore", invalid="ignore"):
-            ratio = np.log(colours / self._base)
-        own = (
-            ratio - np.nanmedian(ratio[seen & self._usable], 0, keepdims=True)
-            if (seen & self._usable).any()
-            else ratio
-        )
-        # Hair, a hand or glasses before the skin change a texel's chroma beyond any blood.
-        chroma = np.abs(own[:, [0, 2]] - own[:, 1:2]).max(1)
-        seen &= chroma < 0.5
-        masks = (self._regions & seen).astype(np.float32)
-        lit = masks @ np.where(seen[:, None], colours, 0)
-        base = masks @ np.where(seen[:, None], self._base, 0)
-        count = masks.sum(1)
-        enough = (count >= _LEAST_TEXELS) & (count >= _LEAST_SHARE * self._areas)
-        with np.errstate(divide="ignore", invalid="ignore"):
-            ratios = np.log(lit.astype(np.float64)) - np.log(base.astype(np.float64))
-        ratios[~enough] = np.nan
-        return _Compared(ratios, ratio, seen)
+        self._map = ChangeMap(table, self.rest, self._base, self.space)
+        frames = [(one.time, self._base.compare(one.colours))
+                  for one in waiting if one.colours is not None]  # fmt: skip
+        self._noise = FrameNoise(self._base, self.space.inside, frames)
 
     def _read(
         self, number: int, time: float, colours: NDArray[np.float32] | None, bend: float
     ) -> Reading:
         if colours is None:
             return make_blank(number, time, self.number, LOST, len(NAMES))
-        compared = self._compare(colours)
+        compared = self._base.compare(colours)
         ratios = compared.ratios
         read = np.asarray(np.isfinite(ratios).all(1))
         if not read[NAMES.index(FACE)]:
             return make_blank(number, time, self.number, HIDDEN, len(NAMES))
-        if time > self._noise.time:  # else it is of the baseline, which is learnt from already
-            self._learn(time, compared)
-        noise = self._noise_factor * self._noise.covariance + self._slow.covariance
-        noise = noise + (_CHROMA_BY_BEND * bend) ** 2 * np.eye(3)
+        self._noise.add(time, compared)
         shown = np.where(read[:, None], ratios, 0.0)
         # Red answers least to blood, so that its ratio tells how much light there is.
-        noise = noise + self._doubt.find_covariance(self._levels, shown[:, 0])
+        doubt = self._doubt.find_covariance(self._base.levels, shown[:, 0])
+        noise = self._noise.find_covariance(bend) + doubt
         gloss = _GLOSS_SD + _GLOSS_BY_BEND * bend**2 + _GLOSS_BY_SHADING * _spread_shading(ratios)
         found = self._response.solve(shown, noise, gloss)
         change = np.where(read, found.change, np.nan)
@@ -374,7 +267,7 @@ class Shot:
         values = (self.rest.melanin, self.rest.hemoglobin)[pigment] if texels is None else texels
         share = self._decomposer.encoder.region_share[pigment]
         face, means, sds = self.rest.face_sd[pigment], [], []
-        for mask in self._regions:
+        for mask in self._base.regions:
             some = bool(mask.any())
             means.append(float(values[mask].mean()) if some else np.nan)
             pixels = float((self.rest.pixel_sd[pigment][mask] ** 2).mean()) if some else 0.0
@@ -382,63 +275,9 @@ class Shot:
         sds[0] = float(face)
         return np.array(means), np.array(sds)
 
-    def _weigh_texels(self, table: ColourTable) -> NDArray[np.float32]:
-        """Weights of log R, G, B in the change of each covered texel, [texels, 3]."""
-        assert self.rest is not None
-        step = np.float32(0.1)
-        lit = [
-            np.log(
-                np.maximum(
-                    table(self.rest.melanin, self.rest.hemoglobin * np.exp(way * step)), 1e-4
-                )
-                + self.rest.gloss[:, None]
-            )
-            for way in (-1, 1)
-        ]
-        slope = ((lit[1] - lit[0]) / (2 * step)).astype(np.float64)
-        white = self._base[:, 1:2] / np.maximum(self._base, 1e-4) * _GLOSS_SD
-        noise = (2 * _GLOSS_SD) ** 2 * np.eye(3) + 4.0
-        total = noise + white[:, :, None] * white[:, None, :]
-        weights = np.linalg.solve(total, slope[..., None])[..., 0]
-        information = np.maximum((weights * slope).sum(1), 1e-9)
-        return np.asarray(weights / information[:, None], np.float32)
-
-    def _map(self, compared: _Compared, gain: float) -> NDArray[np.float32]:
-        """Log change over the texture, smoothed; NaN where it is not skin."""
-        chosen = compared.seen & self._usable
-        with np.errstate(invalid="ignore"):
-            ratio = compared.texels - np.float32(gain)
-        values = np.where(chosen, (ratio * self._texel_weights).sum(1), 0)
-        layers = self.space.fill(np.stack([values, chosen], -1).astype(np.float32), 0.0)
-        smooth = ndimage.gaussian_filter(layers, (_BLUR, _BLUR, 0))
-        with np.errstate(divide="ignore", invalid="ignore"):
-            texture = smooth[..., 0] / smooth[..., 1]
-        hidden = ~self.space.fill(self._usable.astype(np.float32), 0.0).astype(bool) | (
-            smooth[..., 1] < 0.2
-        )
-        texture[hidden] = np.nan
-        assert texture.shape == (SIZE, SIZE)
-        return np.asarray(texture, np.float32)
-
 
 def _spread_shading(ratios: Array) -> float:
     """Standard deviation over the regions [regions, 3] of their gain: exposure is common to all."""
     gains = ratios[1:, 0]
     known = gains[np.isfinite(gains)]
     return float(known.std()) if len(known) > 1 else 0.0
-
-
-def _compare_spreads(ratios: Array, noise: Array) -> Array:
-    """Variance of chroma in a baseline over that of its noise, at least 1, [regions, 1, 1]."""
-    seen = np.asarray(np.isfinite(ratios).all(2))
-    factors = np.ones((ratios.shape[1], 1, 1))
-    for region, own in enumerate(seen.T):
-        if own.sum() > 5:
-            whole = np.cov(ratios[own, region].T)
-            factors[region] = max(1.0, _measure_chroma(whole) / _measure_chroma(noise[region]))
-    return np.asarray(np.minimum(factors, _MOST_FACTOR))
-
-
-def _measure_chroma(covariance: Array) -> float:
-    """Variance of what channels do not share."""
-    return float(max(np.trace(covariance) - covariance.mean() * 3, 1e-12))

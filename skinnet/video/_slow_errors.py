@@ -15,8 +15,6 @@ _LEAST_FILLED = 0.25
 _SMOOTH, _SECONDS = 0.5, 2.0
 """Seconds over which a patch is smoothed, and over which the covariance is averaged."""
 
-_WHITE = np.full((3, 3), 1 / 3)
-
 Array = NDArray[np.float64]
 
 
@@ -59,13 +57,6 @@ class SlowErrors:
         """The covariance now, [regions, 3, 3]."""
         whole = np.zeros((3, 3)) if self._whole is None else self._whole
         return np.asarray(whole / self._count[:, None, None])
-
-    @property
-    def spread(self) -> float:
-        """Standard deviation of a patch's log colour, of what channels do not share."""
-        whole = np.zeros((3, 3)) if self._whole is None else self._whole
-        chroma = np.eye(3) - _WHITE
-        return float(np.sqrt(np.trace(chroma @ whole @ chroma) / 2))
 
     def add(self, time: float, ratios: NDArray[np.floating], seen: NDArray[np.bool_]) -> None:
         """Add log ratios of the texels of a frame to the baseline, [texels, 3], where seen."""
