@@ -27,9 +27,13 @@ from skinnet.inference import _face_checks as faces
 from skinnet.inference._references import balances, profile_use, tone_curve
 from skinnet.inference.full_resolution import _colour_table as colour_table
 from skinnet.video import (
+    _baseline,
     _blood_response,
+    _change_map,
+    _change_scale,
     _face_follower,
     _frame_colours,
+    _frame_noise,
     _look_series,
     _map_frame,
     _noise,
@@ -160,14 +164,14 @@ _LIMITS: dict[str, tuple[ModuleType, tuple[str, ...]]] = {
         _look_series,
         ("_SPACING", "_MOST", "_LEAST", "_CUT", "_LEAST_SPREAD", "_ROUNDS"),
     ),
-    "SHOT": (
-        _shot,
-        (
-            *("_LEAST_TEXELS", "_LEAST_SHARE", "_MOST_BUFFERED", "_GLOSS_SD", "_GLOSS_BY_BEND"),
-            *("_GLOSS_BY_SHADING", "_CHROMA_BY_BEND", "_SCALE_SD", "_SCALE_BY_TONE"),
-            *("_MOST_SCALE_SD", "_MOST_FACTOR", "_BLUR"),
-        ),
+    "BASELINE": (_baseline, ("_LEAST_TEXELS", "_LEAST_SHARE", "_MOST_CHROMA")),
+    "FRAME_NOISE": (_frame_noise, ("_CHROMA_BY_BEND", "_MOST_FACTOR")),
+    "CHANGE_SCALE": (_change_scale, ("_SCALE_SD", "_SCALE_BY_TONE", "_MOST_SCALE_SD")),
+    "CHANGE_MAP": (
+        _change_map,
+        ("_BLUR", "_LEAST_SEEN", "_NOISE_SD", "_GLOSS_SD", "_LIGHT_SD", "_STEP", "_LEAST_COLOUR"),
     ),
+    "SHOT": (_shot, ("_MOST_BUFFERED", "_GLOSS_SD", "_GLOSS_BY_BEND", "_GLOSS_BY_SHADING")),
     "TRACKER": (tracker, ("_BASELINE", "_LOOKS", "_FACTOR", "_MUCH", "UNREADABLE")),
     "STILL": (_still_image, ("_BLOCK", "_MOST_BLOCK", "_MOST_MEAN", "_LEAST_SECONDS")),
     "FILES": (_video_frames, ("_LEAST_BITS",)),

@@ -19,8 +19,10 @@ _NOISE_SD, _GLOSS_SD, _LIGHT_SD = 0.012, 0.006, 2.0
 """Standard deviations of log colours, of gloss in shares of green light, and of the logarithm of
 the light on a texel."""
 
-_STEP = np.float32(0.1)
+_STEP = 0.1
 """Half of the step of log hemoglobin over which the model's colours are compared."""
+
+_LEAST_COLOUR = 1e-4
 
 
 class ChangeMap:
@@ -60,13 +62,16 @@ def _weigh_channels(
     """Weights of log R, G, B in the change of each texel, [texels, 3]."""
     lit = [
         np.log(
-            np.maximum(table(rest.melanin, rest.hemoglobin * np.exp(way * _STEP)), 1e-4)
+            np.maximum(
+                table(rest.melanin, rest.hemoglobin * np.exp(way * np.float32(_STEP))),
+                _LEAST_COLOUR,
+            )
             + rest.gloss[:, None]
         )
         for way in (-1, 1)
     ]
-    slope = ((lit[1] - lit[0]) / (2 * _STEP)).astype(np.float64)
-    white = base[:, 1:2] / np.maximum(base, 1e-4) * _GLOSS_SD
+    slope = ((lit[1] - lit[0]) / (2 * np.float32(_STEP))).astype(np.float64)
+    white = base[:, 1:2] / np.maximum(base, _LEAST_COLOUR) * _GLOSS_SD
     noise = _NOISE_SD**2 * np.eye(3) + _LIGHT_SD**2
     total = noise + white[:, :, None] * white[:, None, :]
     weights = np.linalg.solve(total, slope[..., None])[..., 0]

@@ -231,19 +231,38 @@ export const LOOKS = {
   ROUNDS: 3,
 };
 
-export const SHOT = {
+export const BASELINE = {
   LEAST_TEXELS: 12,
   LEAST_SHARE: 0.4,
+  MOST_CHROMA: 0.5,
+};
+
+export const FRAME_NOISE = {
+  CHROMA_BY_BEND: 0.05,
+  MOST_FACTOR: 25.0,
+};
+
+export const CHANGE_SCALE = {
+  SCALE_SD: 0.22,
+  SCALE_BY_TONE: [0.1, 0.3],
+  MOST_SCALE_SD: 0.45,
+};
+
+export const CHANGE_MAP = {
+  BLUR: 2.5,
+  LEAST_SEEN: 0.2,
+  NOISE_SD: 0.012,
+  GLOSS_SD: 0.006,
+  LIGHT_SD: 2.0,
+  STEP: 0.1,
+  LEAST_COLOUR: 0.0001,
+};
+
+export const SHOT = {
   MOST_BUFFERED: 1200,
   GLOSS_SD: 0.006,
   GLOSS_BY_BEND: 0.5,
   GLOSS_BY_SHADING: 0.5,
-  CHROMA_BY_BEND: 0.05,
-  SCALE_SD: 0.22,
-  SCALE_BY_TONE: [0.1, 0.3],
-  MOST_SCALE_SD: 0.45,
-  MOST_FACTOR: 25.0,
-  BLUR: 2.5,
 };
 
 export const TRACKER = {

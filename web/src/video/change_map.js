@@ -1,14 +1,11 @@
 /** The map of the change over a face's texture, smoothed. */
 
 import { filterGaussian } from "../filters.js";
-import { SHOT, TEXTURE } from "../python_data.js";
+import { CHANGE_MAP, TEXTURE } from "../python_data.js";
 import { add, dot, makeIdentity, solve, square } from "./matrices.js";
 
 const { SIZE } = TEXTURE;
-const STEP = 0.1; // log change over which the answer of a texel is taken
-const LEAST_COLOUR = 1e-4;
-const LEAST_SHARE = 0.2; // of skin around a texel
-const GAIN_VARIANCE = 4;
+const { BLUR, LEAST_SEEN, NOISE_SD, GLOSS_SD, LIGHT_SD, STEP, LEAST_COLOUR } = CHANGE_MAP;
 
 export class ChangeMap {
   /** Weigh log red, green and blue in the change of each covered texel. */
@@ -33,10 +30,10 @@ export class ChangeMap {
       }
     }
     const [sum, share] = [values, chosen].map((layer) =>
-      filterGaussian(space.fill(layer, 0), SIZE, SIZE, SHOT.BLUR),
+      filterGaussian(space.fill(layer, 0), SIZE, SIZE, BLUR),
     );
     return sum.map((value, at) =>
-      this.isShown[at] && share[at] >= LEAST_SHARE ? value / share[at] : NaN,
+      this.isShown[at] && share[at] >= LEAST_SEEN ? value / share[at] : NaN,
     );
   }
 }
@@ -49,9 +46,9 @@ function weighTexel(rest, base, table, at) {
   });
   const slope = lit[1].map((high, channel) => (high - lit[0][channel]) / (2 * STEP));
   const colour = [...base.subarray(3 * at, 3 * at + 3)];
-  const white = colour.map((value) => (SHOT.GLOSS_SD * colour[1]) / Math.max(value, LEAST_COLOUR));
-  const noise = makeIdentity((2 * SHOT.GLOSS_SD) ** 2);
-  const weights = solve(add(noise, GAIN_VARIANCE, square(white)), slope);
+  const white = colour.map((value) => (GLOSS_SD * colour[1]) / Math.max(value, LEAST_COLOUR));
+  const noise = makeIdentity(NOISE_SD ** 2);
+  const weights = solve(add(noise, LIGHT_SD ** 2, square(white)), slope);
   const information = Math.max(dot(weights, slope), 1e-9);
   return weights.map((weight) => weight / information);
 }

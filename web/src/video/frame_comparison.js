@@ -1,11 +1,9 @@
 /** Colours of frames compared with those of a baseline. */
 
-import { FRAME_COLOURS, SHOT } from "../python_data.js";
+import { BASELINE, FRAME_COLOURS } from "../python_data.js";
 import { findMedian } from "../statistics.js";
 
 const { BRIGHTEST, DARKEST } = FRAME_COLOURS;
-
-const MOST_CHROMA = 0.5; // beyond any blood: hair, a hand or glasses before the skin
 
 /** Mean colours of texels in a baseline, and which texels can be used. */
 export class FrameComparison {
@@ -41,7 +39,7 @@ export class FrameComparison {
   compareRegion(colours, list, seen) {
     const shown = list.filter((at) => seen[at]);
     const isEnough =
-      shown.length >= SHOT.LEAST_TEXELS && shown.length >= SHOT.LEAST_SHARE * list.length;
+      shown.length >= BASELINE.LEAST_TEXELS && shown.length >= BASELINE.LEAST_SHARE * list.length;
     if (!isEnough) return [NaN, NaN, NaN];
     const [lit, base] = [average(colours, shown), average(this.base, shown)];
     return lit.map((value, at) => Math.log(value) - Math.log(base[at]));
@@ -92,6 +90,6 @@ function hideOthers(texels, seen, usable) {
   seen.forEach((_, at) => {
     const [red, green, blue] = middle.map((value, channel) => texels[3 * at + channel] - value);
     const chroma = Math.max(Math.abs(red - green), Math.abs(blue - green));
-    if (!(chroma < MOST_CHROMA)) seen[at] = 0;
+    if (!(chroma < BASELINE.MOST_CHROMA)) seen[at] = 0;
   });
 }

@@ -1,7 +1,7 @@
 /** One shot of a video, between two cuts: its baseline, resting maps and readings (`_shot.py`). */
 
 import { placeFace, toBox } from "../face_place.js";
-import { SHOT, STATES, TRACKER } from "../python_data.js";
+import { CHANGE_SCALE, FRAME_NOISE, SHOT, STATES, TRACKER } from "../python_data.js";
 import { clamp } from "../rounding.js";
 import { Refusal } from "../sentences.js";
 import { BloodResponse } from "./blood_response.js";
@@ -193,7 +193,7 @@ export class Shot {
     const covariance = add(
       scale(this.noises[region].covariance, this.noiseFactors[region]),
       this.slow.findCovariance(region),
-      makeIdentity((SHOT.CHROMA_BY_BEND * bend) ** 2),
+      makeIdentity((FRAME_NOISE.CHROMA_BY_BEND * bend) ** 2),
       // Red answers least to blood, so that its ratio tells how much light there is.
       this.doubt.findCovariance(this.comparison.levels[region], ratios[0]),
     );
@@ -227,8 +227,8 @@ export class Shot {
 /** Relative standard deviation of a change where melanin is as much: what is not known of skins. */
 function findOwnScale(melanin) {
   const darkness = Math.log(Math.max(melanin, 1e-3) / 0.1);
-  const [less, more] = SHOT.SCALE_BY_TONE;
-  return Math.min(SHOT.SCALE_SD + (darkness < 0 ? -less : more) * darkness, SHOT.MOST_SCALE_SD);
+  const [less, more] = CHANGE_SCALE.SCALE_BY_TONE;
+  return Math.min(CHANGE_SCALE.SCALE_SD + (darkness < 0 ? -less : more) * darkness, CHANGE_SCALE.MOST_SCALE_SD);
 }
 
 /** Standard deviation over the regions of their gain: exposure is common to all. */
@@ -250,7 +250,7 @@ function compareSpreads(ratios, noise) {
       return seen.reduce((sum, one) => sum + product(one), 0) / (seen.length - 1);
     }),
   );
-  return clamp(measureChroma(whole) / measureChroma(noise), 1, SHOT.MOST_FACTOR);
+  return clamp(measureChroma(whole) / measureChroma(noise), 1, FRAME_NOISE.MOST_FACTOR);
 }
 
 /** Variance of what channels do not share. */
