@@ -1,6 +1,6 @@
 """Hemoglobin of a face over time, from which a dynamic model is fitted."""
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 from skinnet.appearance._dynamic_file import FIELD_SIZE, read_model
 from skinnet.appearance._track_rows import read_track_rows, spread_regions
 from skinnet.errors import InputError
+from skinnet.images.faces._face_chart import warp_to_chart
 
 _REST = 0.05
 """Volume fraction at rest of a track, which knows changes alone."""
@@ -52,6 +53,42 @@ class BloodSequence:
                     f"{name} needs one finite amount for each of the {frames[0]} times; got an "
                     f"array {np.shape(values)}."
                 )
+
+    @classmethod
+    def from_pictures(
+        cls,
+        maps: Sequence[NDArray[np.floating]],
+        landmarks: Sequence[NDArray[np.floating]],
+        times: NDArray[np.float64],
+        coefficients: Mapping[str, NDArray[np.float64]] | None = None,
+        size: int = 2 * FIELD_SIZE,
+    ) -> "BloodSequence":
+        """Lay maps of pictures out on the chart of the shipped model.
+
+        Args:
+            maps: Volume fractions of each picture, [h, w]; NaN where there is no skin. The first
+                one is the face at rest.
+            landmarks: Columns and rows of the face's landmarks in each, as `Face.landmarks`.
+            times: In seconds, one for each picture.
+            coefficients: Amount of each cause in each picture; None if they are not known.
+            size: Side of the chart.
+
+        Returns:
+            The sequence, of all pictures.
+
+        Raises:
+            InputError: There are no pictures, or their numbers differ.
+        """
+        if not len(maps) or len(maps) != len(landmarks):
+            raise InputError(
+                "A sequence has one map or more, each with its landmarks; got "
+                f"{len(maps)} and {len(landmarks)}."
+            )
+        chart = read_model(None)[1]["landmarks"]
+        laid_out = np.stack(
+            [warp_to_chart(*pair, chart, size) for pair in zip(maps, landmarks, strict=True)]
+        )
+        return cls(laid_out[0], laid_out, np.asarray(times, np.float64), coefficients or {})
 
     @classmethod
     def from_track(

@@ -4,10 +4,9 @@ from typing import NamedTuple
 
 import numpy as np
 from jaxtyping import Float
-from scipy import ndimage
 
 from skinnet.errors import InputError
-from skinnet.images.faces._face_chart import normalise_landmarks, place_texels
+from skinnet.images.faces._face_chart import normalise_landmarks, warp_to_chart
 from skinnet.images.faces._face_mesh import MESH_POINTS
 from train.synthetic.videos.clip_renderer import ClipRenderer, ClipSettings
 from train.synthetic.videos.clips import Clips
@@ -67,14 +66,12 @@ def _lay_out(
 ) -> tuple[Float[np.ndarray, "size size"], Float[np.ndarray, "size size 2"]]:
     """Hemoglobin at rest and angles of a face on the chart."""
     resting = renderer.true_hemoglobin(0.0) / np.exp(renderer._find_change(0.0))
-    at = np.moveaxis(place_texels(renderer.landmarks, landmarks, size)[..., ::-1], -1, 0) - 0.5
-    seen = np.isfinite(at).all(0)
-    at = np.where(seen, at, 0)
     angles = np.where(np.isfinite(resting)[..., None], renderer.chart, np.nan)
-    layers = [resting, *np.moveaxis(angles, -1, 0)]
-    sampled = [ndimage.map_coordinates(each, at, order=1, cval=np.nan) for each in layers]
-    values = [np.where(seen, each, np.nan) for each in sampled]
-    return values[0], np.stack(values[1:], -1)
+    layers = [
+        warp_to_chart(each, renderer.landmarks, landmarks, size).astype(np.float64)
+        for each in (resting, *np.moveaxis(angles, -1, 0))
+    ]
+    return layers[0], np.stack(layers[1:], -1)
 
 
 def _measure_asymmetry(places: Float[np.ndarray, "478 2"]) -> float:

@@ -5,6 +5,7 @@ Beyond the mesh, a rim continues it over ears, hairline and throat.
 
 import numpy as np
 from numpy.typing import NDArray
+from scipy import ndimage
 from scipy.interpolate import LinearNDInterpolator
 
 from skinnet.images.faces._face_mesh import MESH_POINTS
@@ -75,3 +76,18 @@ def place_texels(landmarks: Points, chart: Points, size: int) -> NDArray[np.floa
     place = LinearNDInterpolator(extend_landmarks(chart), extend_landmarks(landmarks))
     line = (np.arange(size) + 0.5) / size
     return np.asarray(place(*np.meshgrid(line, line)))
+
+
+def warp_to_chart(
+    values: NDArray[np.floating], landmarks: Points, chart: Points, size: int
+) -> NDArray[np.float32]:
+    """Lay a map [h, w] of a picture out on a chart [size, size], as of `place_texels`.
+
+    Texels outside the picture, or beside pixels that are NaN, are NaN.
+    """
+    at = np.moveaxis(place_texels(landmarks, chart, size)[..., ::-1], -1, 0) - 0.5
+    inside = np.isfinite(at).all(0)
+    sampled = ndimage.map_coordinates(
+        values, np.where(inside, at, 0), order=1, cval=np.nan, output=np.float32
+    )
+    return np.where(inside, sampled, np.float32(np.nan))

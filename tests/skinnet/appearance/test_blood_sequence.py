@@ -4,9 +4,11 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from skimage.data import astronaut
 
 from skinnet.appearance import BloodSequence, DynamicModel
 from skinnet.errors import InputError
+from skinnet.images import find_faces
 
 
 @pytest.fixture(scope="module")
@@ -42,6 +44,22 @@ def test_tracks_are_read(model: DynamicModel, tmp_path: Path) -> None:
     assert amount[0] == 0 and 0.2 < amount[1] < 0.6
     known = BloodSequence.from_track(table, {"warm": np.array([0, 1.0, 1.0])})
     assert DynamicModel.fit([known], seconds={}).mean.max() > 0.3
+
+
+def test_maps_of_pictures_are_laid_out(model: DynamicModel) -> None:
+    landmarks = find_faces(astronaut())[0].landmarks
+    rest = np.full((512, 512), 0.04, np.float32)
+    rest[:60] = np.nan
+    flushed = model.sample(rest[::2, ::2], {"flush": 0.6}, landmarks / 2)
+    sequence = BloodSequence.from_pictures(
+        [rest, flushed], [landmarks, landmarks / 2], np.arange(2.0)
+    )
+    assert sequence.maps.shape == (2, 96, 96) and np.isnan(sequence.rest[0, 0])
+    found = model.explain(sequence, ["flush", "pallor"])
+    assert found["flush"].tolist() == pytest.approx([0, 0.6], abs=0.03)
+    assert found["pallor"].tolist() == pytest.approx([0, 0], abs=0.02)
+    with pytest.raises(InputError, match="got 1 and 0"):
+        BloodSequence.from_pictures([rest], [], np.arange(1.0))
 
 
 @pytest.mark.parametrize("text", ["", "time,other\n0,1\n", "time,forehead_log_ratio\nx,y\n"])
