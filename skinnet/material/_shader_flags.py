@@ -4,7 +4,7 @@ import argparse
 import re
 from pathlib import Path
 
-from skinnet.inference._command.shared_arguments import add_json, read_folder
+from skinnet.inference._command.shared_arguments import add_json, read_texture_folder
 
 TARGETS = ("blender", "materialx", "glsl", "osl")
 
@@ -37,7 +37,7 @@ def add_shader(verb: argparse.ArgumentParser) -> None:
     verb.add_argument(
         "-o",
         "--output",
-        type=read_folder,
+        type=read_texture_folder,
         default=Path(FOLDER),
         metavar="DIR",
         help=f"folder to write to; {FOLDER} by default",

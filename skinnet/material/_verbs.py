@@ -4,7 +4,11 @@ import argparse
 from pathlib import Path
 
 from skinnet.inference._command.photo_verbs import PhotoVerb
-from skinnet.inference._command.shared_arguments import add_folder, add_json
+from skinnet.inference._command.shared_arguments import (
+    add_folder,
+    add_json,
+    read_texture_folder,
+)
 from skinnet.material._shader_flags import add_shader
 
 _MATERIAL = "skinnet.material"
@@ -44,7 +48,7 @@ def _add_texture(verb: argparse.ArgumentParser, what: str) -> None:
 
 
 def _add_output(verb: argparse.ArgumentParser, usual: str) -> None:
-    add_folder(verb, usual)
+    add_folder(verb, usual, read_texture_folder)
     add_json(verb, "what was made")
 
 

@@ -1,6 +1,7 @@
 """Flags that several verbs of photographs have."""
 
 import argparse
+from collections.abc import Callable
 from pathlib import Path
 
 _FILE_ENDS = (".png", ".tif", ".tiff", ".exr", ".jpg", ".jpeg", ".json")
@@ -31,12 +32,14 @@ def add_json(verb: argparse.ArgumentParser, what: str = "the summary") -> None:
     )
 
 
-def add_folder(verb: argparse.ArgumentParser, usual: str) -> None:
+def add_folder(
+    verb: argparse.ArgumentParser, usual: str, read: Callable[[str], Path] | None = None
+) -> None:
     """Add the folder to write to, and which one it is by default."""
     verb.add_argument(
         "-o",
         "--output",
-        type=read_folder,
+        type=read or read_folder,
         metavar="DIR",
         help=f"folder to write to; by default {usual}",
     )
@@ -46,14 +49,23 @@ def read_folder(word: str) -> Path:
     """Read the name of a folder of results.
 
     Raises:
-        argparse.ArgumentTypeError: It is that of a file.
+        argparse.ArgumentTypeError: It is that of standard output.
     """
     if word == "-":
         raise argparse.ArgumentTypeError(
             "-o is a folder, since several files are written; --json prints the numbers to "
             "standard output."
         )
-    folder = Path(word)
+    return Path(word)
+
+
+def read_texture_folder(word: str) -> Path:
+    """Read the name of a folder of textures, which are easily named as one file.
+
+    Raises:
+        argparse.ArgumentTypeError: It is that of a file, or of standard output.
+    """
+    folder = read_folder(word)
     if folder.suffix.lower() in _FILE_ENDS and not folder.is_dir():
         raise argparse.ArgumentTypeError(
             f"it is a folder, in which files are named after what they are made from; got {word}"
