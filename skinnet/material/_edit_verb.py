@@ -23,7 +23,7 @@ from skinnet.material._brushes import Brush, parse_brush
 from skinnet.material._edit_masks import read_mask, read_paint
 from skinnet.material._edit_tiles import EditedTile, open_tiles
 from skinnet.material._invert_verb import get_opaque
-from skinnet.material._map_files import owns
+from skinnet.material._map_files import describe_edited, owns
 from skinnet.material._presets import PRESETS
 from skinnet.material._rows_progress import show_rows
 from skinnet.material._texture_checks import TextureCounts
@@ -144,7 +144,7 @@ def _write_tile(
             )
             writer.write(_recolour(stored, maps, fractions, colour, tile))
             advance(maps.f_mel.size)
-    return counts.check(tile.name)
+    return [*describe_edited(texture.path), *counts.check(tile.name)]
 
 
 def _edit_fractions(

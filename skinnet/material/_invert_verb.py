@@ -23,6 +23,7 @@ from skinnet.material._map_files import (
     RECORD_END,
     WHITES,
     compute_set_digest,
+    describe_edited,
     name_map,
     owns,
     to_fractions,
@@ -152,7 +153,7 @@ def _write(
             files = {name: name_map(stem, name, tile, path, texture.is_float) for name in MAPS}
             parts = {name: temporary(folder / file) for name, file in files.items()}
             counts = _write_tile(texture, colour, parts, digest, levels, advance)
-            notes += counts.check(str(path))
+            notes += [*describe_edited(path), *counts.check(str(path))]
             size = [texture.spec.width, texture.spec.height]
             tiles.append({"tile": tile, "size": size, "files": files})
         more = {**levels.summarise(), "tiles": tiles, "notes": notes}

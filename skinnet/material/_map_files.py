@@ -12,7 +12,7 @@ from jaxtyping import Float32, UInt16
 from skinnet.errors import InputError
 from skinnet.files import READ_ERRORS
 from skinnet.files._reading import MOST_TEXT, read_file
-from skinnet.images._mark import Mark, parse_mark, read_mark
+from skinnet.images._mark import EDITED, Mark, parse_mark, read_mark
 from skinnet.images._result_names import compute_digest
 from skinnet.material._texture_file import import_openimageio
 
@@ -65,6 +65,14 @@ def owns(file: Path, digest: str) -> bool:
     """Whether a file is a result of the texture of a digest, so that it may be replaced."""
     mark = _read_own_mark(file)
     return mark is not None and mark.digest == digest
+
+
+def describe_edited(path: Path) -> list[str]:
+    """Say that a texture is the result of an edit, if it is."""
+    mark = _read_own_mark(path)
+    if mark is None or mark.part != EDITED:
+        return []
+    return [f"{path} was edited by skinnet; its skin is read as it is after the edit."]
 
 
 def _read_own_mark(file: Path) -> Mark | None:

@@ -51,7 +51,8 @@ class PigmentMaps:
         rgb = torch.from_numpy(finite).clamp(-1, 10)
         mean, mel_sd, blood_sd, distance = self._posterior(rgb)
         skin = ((_HARDLY - distance) / (_HARDLY - _SURELY)).clamp(0, 1)
-        skin = torch.where(mean <= _MOST_MELANIN, skin, 0.0)
+        known = torch.from_numpy(np.isfinite(linear).all(-1))
+        skin = torch.where(known & (mean <= _MOST_MELANIN), skin, 0.0)
         mel, blood = self._nearest(rgb, (_SOON * skin).clamp(0, 1))
         # Beyond the table's skins its values have no meaning.
         spreads = (torch.where(skin > 0, sd, 0.0) for sd in (mel_sd, blood_sd))

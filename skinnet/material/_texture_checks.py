@@ -22,7 +22,7 @@ class TextureCounts:
     """Counts over the texels of a texture, for what it shows."""
 
     def __init__(self) -> None:
-        self._counts = np.zeros(6)
+        self._counts = np.zeros(7)
 
     def add(
         self,
@@ -41,7 +41,8 @@ class TextureCounts:
         blood = maps.f_blood[::_STEP]
         bound = skin & ((blood < _LEAST_BLOOD) | (blood > _MOST_BLOOD))
         flags = (np.ones_like(place), normal, grey, whiter, skin, bound)
-        self._counts += [(flag & place).sum() for flag in flags]
+        counts = [(flag & place).sum() for flag in flags]
+        self._counts += [*counts, (~np.isfinite(encoded).all(-1)).sum()]
 
     def check(self, name: str) -> list[str]:
         """Check what was counted.
@@ -54,7 +55,7 @@ class TextureCounts:
         """
         if not self._counts[0]:
             raise InputError(f"{name} is black or transparent everywhere; give the albedo.")
-        normal, grey, whiter, skin, bound = self._counts[1:] / self._counts[0]
+        normal, grey, whiter, skin, bound = self._counts[1:6] / self._counts[0]
         if grey > _ALMOST_ALL:
             raise InputError(
                 f"{name} is grey, as roughness, height and masks are; give the texture of the "
@@ -66,7 +67,16 @@ class TextureCounts:
                 "the colour (albedo, base colour or diffuse)."
             )
         said = [*self._describe_skin(name, skin), *self._describe_highlights(name, whiter)]
-        return [*said, *self._describe_bound(name, bound, skin)]
+        return [*said, *self._describe_bound(name, bound, skin), *self._describe_unknown(name)]
+
+    def _describe_unknown(self, name: str) -> list[str]:
+        count = int(self._counts[6])
+        if not count:
+            return []
+        return [
+            f"{name}: {count:,} texels are not numbers, or infinite; they count as no skin and "
+            "stay as they are."
+        ]
 
     @staticmethod
     def _describe_skin(name: str, skin: float) -> list[str]:

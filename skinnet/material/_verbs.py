@@ -2,6 +2,7 @@
 
 import argparse
 from pathlib import Path
+from typing import Any
 
 from skinnet.inference._command.photo_verbs import PhotoVerb
 from skinnet.inference._command.shared_arguments import (
@@ -13,6 +14,23 @@ from skinnet.material._shader_flags import add_shader
 
 _MATERIAL = "skinnet.material"
 _PRESET_NAMES = ("blush", "tan", "pallor", "vitiligo")
+
+
+class _Once(argparse.Action):
+    """A flag of which a second one would silently replace the first."""
+
+    def __call__(
+        self,
+        parser: argparse.ArgumentParser,
+        namespace: argparse.Namespace,
+        values: Any,
+        option_string: str | None = None,
+    ) -> None:
+        if getattr(namespace, self.dest) is not None:
+            raise argparse.ArgumentError(
+                self, "it is given twice; give one, and what it lacks by factors and brushes"
+            )
+        setattr(namespace, self.dest, values)
 
 
 def _add_texture(verb: argparse.ArgumentParser, what: str) -> None:
@@ -88,6 +106,7 @@ def _add_edit(verb: argparse.ArgumentParser) -> None:
     )
     group.add_argument(
         "--preset",
+        action=_Once,
         choices=_PRESET_NAMES,
         help="an edit with a name; docs/albedo.md has their numbers and sources",
     )

@@ -125,4 +125,4 @@ class EventFinder:
             self._trail[0][0],
         )
         drawn = half - (self._since - half)
-        return float(max(drawn, self._trail[0][0]) - _SMOOTH)
+        return float(max(drawn - _SMOOTH, self._trail[0][0]))

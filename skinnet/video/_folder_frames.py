@@ -52,7 +52,10 @@ class FolderFrames:
             )
         found = walk([str(folder)], False)
         self.notes += found.notes
-        files = sorted(Path(each.path) for each in found.pictures)
+        pictures = (Path(each.path) for each in found.pictures)
+        files = sorted(path for path in pictures if not path.is_dir())
+        if not files:
+            raise InputError(f"{name} has no pictures; give a folder with the frames of a video.")
         return [(number / rate, path) for number, path in enumerate(files)]
 
 

@@ -22,6 +22,7 @@ from skinnet.inference.decomposer import Decomposer
 from skinnet.inference.results import _describe_fault, _make_folder
 from skinnet.video._folder_frames import FolderFrames
 from skinnet.video._frame_progress import FrameProgress
+from skinnet.video._pulse import LEAST_QUALITY
 from skinnet.video._still_image import StillImage
 from skinnet.video._track_files import (
     ENDS,
@@ -266,7 +267,9 @@ class _Run:
         rate = "no pulse could be read"
         if pulse["quality"] is not None:
             what = f"pulse {pulse['rate_bpm']:.0f} per minute" if pulse["is_readable"] else rate
-            rate = f"{what} (quality {pulse['quality']:.2f})"
+            unlike = not pulse["is_readable"] and pulse["quality"] >= LEAST_QUALITY
+            why = ", but the face alone has another rhythm" if unlike else ""
+            rate = f"{what} (quality {pulse['quality']:.2f}{why})"
         events = [each for each in summary["events"] if each["region"] == "face"]
         told = ", ".join(
             f"{each['kind']} at {each['onset']:.1f} s ({100 * (each['factor'] - 1):+.0f} %)"

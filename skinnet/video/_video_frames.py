@@ -64,6 +64,7 @@ class VideoFrames:
         self.bits_per_pixel: float | None = None
         self._bits = self._pixels = self._damaged = 0
         self._left: str | None = None
+        self._is_rate_ignored = False
 
     def __iter__(self) -> Iterator[Frame]:
         """Frames in order of time.
@@ -90,6 +91,10 @@ class VideoFrames:
         if dropped:
             self.notes.append(
                 f"{dropped} frames of {self.name} whose time stamps go back were left out."
+            )
+        if self._is_rate_ignored:
+            self.notes.append(
+                f"{self.name} has time stamps, which are taken instead of --fps {self._rate:g}."
             )
         self._check_end(last)
 
@@ -190,6 +195,7 @@ class VideoFrames:
 
     def _find_time(self, frame: Any, number: int) -> float:
         if frame.time is not None:
+            self._is_rate_ignored = self._rate is not None
             return float(frame.time)
         if self._rate is None:
             raise InputError(

@@ -208,10 +208,12 @@ class Tracker:
 
     def _keep_shot(self, shot: Shot) -> None:
         if shot.rest is None:
-            self._refusal = self._refusal or shot.refusal
-            if shot.refusal is not None:
-                self._note(f"The shot from {shot.start:.2f} s is not read: {shot.refusal}")
+            refusal = shot.refusal or self._explain_baseline(shot)
+            self._refusal = self._refusal or refusal
+            if refusal is not None:
+                self._note(f"The shot from {shot.start:.2f} s is not read: {refusal}")
             return
+        self._check_baseline_end(shot)
         for sentence in shot.notes:
             self._note(sentence)
         if len(self._shots) < _MOST_LISTED:
@@ -228,6 +230,24 @@ class Tracker:
             self._melanin.append((shot.number, pooled._replace(texels=pooled.texels[:0])))
             self._rest.append((*shot.average_melanin(pooled), *shot.resting_blood()))
             self._portraits = (shot.portrait, shot.space.fill(shot.rest.hemoglobin))
+
+    def _explain_baseline(self, shot: Shot) -> InputError | None:
+        """Say that a shot ends before its baseline begins, if it does."""
+        begin, length = self._baseline[0], self._last - shot.start
+        if length >= begin:
+            return None
+        return InputError(
+            f"The baseline begins at {begin:g} s, and the shot is {length:.2f} s long; give an "
+            "earlier baseline."
+        )
+
+    def _check_baseline_end(self, shot: Shot) -> None:
+        end, length = self._baseline[1], self._last - shot.start
+        if length <= end:
+            self._note(
+                f"The shot from {shot.start:.2f} s is {length:.2f} s long, and its baseline "
+                f"{end:g} s: it is compared with itself. Give a shorter baseline to see changes."
+            )
 
     def _take(self, reading: Reading) -> None:
         """Count a reading, and pass it on to pulse and events."""

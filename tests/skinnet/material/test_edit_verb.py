@@ -326,3 +326,16 @@ def test_the_name_of_a_file_is_no_folder(
     words = ["--melanin", "2"] if verb == "edit-albedo" else []
     assert main([verb, str(texture), *words, "-o", str(target)]) == 2
     assert f"got {target}" in capsys.readouterr().err and not target.exists()
+
+
+def test_two_presets_are_refused(texture: Path, capsys) -> None:
+    words = ["--preset", "tan", "--preset", "blush"]
+    assert main(["edit-albedo", str(texture), *words]) == 2
+    assert "is given twice" in capsys.readouterr().err
+
+
+def test_an_edited_texture_is_said_to_be_one(texture: Path, capsys) -> None:
+    edit(texture, "--melanin", 2)
+    for verb in (["invert"], ["edit-albedo", "--hemoglobin", "2"]):
+        assert main([*verb, str(texture.with_name("a_edited.png"))]) == 0
+        assert "was edited by skinnet" in capsys.readouterr().err

@@ -154,3 +154,16 @@ def test_skin_whose_colours_have_no_hemoglobin_is_said(tmp_path: Path, capsys) -
     write_texture(tmp_path / "b.png", paint_skin(48), "uint16")
     assert main(["invert", str(tmp_path / "b.png")]) == 0
     assert "the most hemoglobin" not in capsys.readouterr().err
+
+
+def test_what_is_no_number_is_no_skin_and_stays(tmp_path: Path, capsys) -> None:
+    albedo = np.full((64, 64, 3), (0.5, 0.27, 0.18), np.float32)
+    albedo[0], albedo[1, 0] = np.nan, np.inf
+    stored = write_texture(tmp_path / "a.exr", albedo, "float")
+    assert main(["edit-albedo", str(tmp_path / "a.exr"), "--melanin", "2"]) == 0
+    assert "are not numbers" in capsys.readouterr().err
+    edited = read_pixels(tmp_path / "a_edited.exr")
+    np.testing.assert_array_equal(edited[0], stored[0])
+    assert edited[1, 0, 0] == np.inf and (edited[2:] < stored[2:]).all()
+    assert main(["invert", str(tmp_path / "a.exr")]) == 0
+    assert "65 texels are not numbers" in capsys.readouterr().err

@@ -42,3 +42,9 @@ def test_doubt_of_the_size_does_not_hide_an_event() -> None:
         finder.add(number / 20, float(change), 0.6 * abs(change) + 0.02, 0.02)
     event = finder.restart(2)
     assert event is not None and event.sd > 0.2
+
+
+def test_an_event_does_not_begin_before_the_video() -> None:
+    changes = np.full(300, 0.3)
+    changes[:5] = 0.0
+    assert find(changes)[0].onset >= 0

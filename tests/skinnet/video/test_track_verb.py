@@ -64,6 +64,7 @@ def test_bad_inputs_are_sentences(tmp_path: Path, capsys: pytest.CaptureFixture[
     assert "no video that FFmpeg can read" in refuse(capsys, str(tmp_path / "text.mp4"))
     (tmp_path / "frames").mkdir()
     assert "--fps" in refuse(capsys, str(tmp_path / "frames"))
+    assert "no pictures" in refuse(capsys, str(tmp_path / "frames"), "--fps", "20")
     assert "first and last second" in refuse(capsys, "a.mp4", "--baseline", "3")
     assert "above 0" in refuse(capsys, "a.mp4", "--fps", "0")
 

@@ -142,3 +142,16 @@ def test_times_must_increase(decomposer: Decomposer) -> None:
 def test_arguments_are_checked(decomposer: Decomposer, arguments: dict, sentence: str) -> None:
     with pytest.raises(InputError, match=sentence):
         Tracker(decomposer, **arguments)
+
+
+def test_a_baseline_beyond_the_end_is_said(decomposer: Decomposer) -> None:
+    tracker = Tracker(decomposer, baseline=(20, 25), maps=False)
+    follow(tracker, [astronaut()] * 3)
+    with pytest.raises(InputError, match="The baseline begins at 20 s"):
+        tracker.finish()
+
+
+def test_a_video_that_is_all_baseline_is_said(decomposer: Decomposer) -> None:
+    tracker = Tracker(decomposer, maps=False)
+    follow(tracker, [astronaut()] * 3)
+    assert any("compared with itself" in note for note in tracker.finish().notes)

@@ -83,6 +83,10 @@ def _read_arrays(path: Path) -> dict[str, np.ndarray]:
         raise InputError(
             f"{path} lacks {error.args[0]}; an .npz of ICT-FaceKit holds {', '.join(ARRAYS)}."
         ) from error
+    except FileNotFoundError as error:
+        raise InputError(
+            f"There is no file {path}; python -m tools.ict_facekit ICT-FaceKit -o {path} makes it."
+        ) from error
     except (OSError, ValueError) as error:
         raise InputError(f"{path} cannot be read as an .npz of arrays; copy it again.") from error
     for name, shape in ARRAYS.items():
