@@ -176,7 +176,7 @@ _LIMITS: dict[str, tuple[ModuleType, tuple[str, ...]]] = {
     "STILL": (_still_image, ("_BLOCK", "_MOST_BLOCK", "_MOST_MEAN", "_LEAST_SECONDS")),
     "FILES": (_video_frames, ("_LEAST_BITS",)),
     "CHANGES": (_map_frame, ("LARGEST_CHANGE", "_CHANGE")),
-    "COURSE": (_track_panel, ("_COLOURS", "_SHOWN")),
+    "COURSE": (_track_panel, ("_COLOURS", "_SHOWN", "_QUANTILE")),
     "TRACK_TABLE": (_track_files, ("_FIELDS", "_LEVEL")),
 }
 

@@ -25,6 +25,9 @@ _COLOURS = {
 }
 """The colours of Okabe and Ito, which all readers tell apart, and red for the lips."""
 
+_QUANTILE = 1.645
+"""Standard deviations from the middle of an interval of 90 % to its ends."""
+
 _SHOWN = 0.08
 """Least height of the plot: log changes on either side of 0."""
 
@@ -105,10 +108,12 @@ def _draw_course(panel: Image.Image, track: Track, top: int) -> None:
         return
     times, changes = rows[:, 0], rows[:, 1 : 1 + len(NAMES)]
     sds = rows[:, 1 + len(NAMES) :]
-    reach = max(_SHOWN, 1.1 * _find_reach(changes))
+    half = _QUANTILE * sds[:, 0]
+    ends = np.stack([changes[:, 0] - half, changes[:, 0] + half])
+    reach = max(_SHOWN, 1.1 * _find_reach(changes), 1.05 * _find_reach(ends))
     scale = _Axes(box, float(times[0]), max(float(times[-1]), float(times[0]) + 1e-3), reach)
     _draw_grid(draw, scale)
-    _draw_band(draw, scale, times, changes[:, 0], 1.645 * sds[:, 0])
+    _draw_band(draw, scale, times, changes[:, 0], half)
     for event in track.events:
         if event.region == "face":
             x = scale.x(event.onset)

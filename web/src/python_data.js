@@ -292,6 +292,7 @@ export const CHANGES = {
 export const COURSE = {
   COLOURS: {"face": [38, 38, 40], "forehead": [0, 114, 178], "left_cheek": [213, 94, 0], "right_cheek": [204, 121, 167], "nose": [0, 158, 115], "lips": [200, 30, 45], "chin": [150, 120, 40]},
   SHOWN: 0.08,
+  QUANTILE: 1.645,
 };
 
 export const TRACK_TABLE = {

@@ -7,7 +7,6 @@ import { formatChange } from "./change_scale.js";
 const HEIGHT = 320; // in pixels of CSS
 const MARGINS = { left: 62, top: 10, right: 12, bottom: 30 };
 const TICK = 110; // least distance between two labels of time
-const QUANTILE = 1.645; // for the ends of the interval of 90 %
 
 export class CourseView {
   /** Draws in a canvas, and calls `onTime(time)` where it is clicked. */
@@ -28,8 +27,13 @@ export class CourseView {
     this.readings = readings;
     this.start = readings[0].time;
     this.end = Math.max(readings.at(-1).time, this.start + 1e-3);
-    const sizes = readings.flatMap(({ change }) => change.filter(Number.isFinite).map(Math.abs));
-    this.reach = Math.max(COURSE.SHOWN, 1.1 * (sizes.length ? findPercentile(sizes, 99.5) : 0));
+    const ends = ({ change, changeSd }) =>
+      [-1, 1].map((way) => change[0] + way * COURSE.QUANTILE * changeSd[0]);
+    this.reach = Math.max(
+      COURSE.SHOWN,
+      1.1 * findReach(readings.flatMap(({ change }) => [...change])),
+      1.05 * findReach(readings.flatMap(ends)),
+    );
     this.canvas.setAttribute("aria-label", describeCourse(readings));
     this.draw();
   }
@@ -115,7 +119,7 @@ export class CourseView {
     context.globalAlpha = 0.16;
     for (const run of this.listRuns(0)) {
       const side = (reading, way) => {
-        const change = reading.change[0] + way * QUANTILE * reading.changeSd[0];
+        const change = reading.change[0] + way * COURSE.QUANTILE * reading.changeSd[0];
         return [this.x(reading.time), this.y(change)];
       };
       context.beginPath();
@@ -164,4 +168,10 @@ function describeCourse(readings) {
 
 function readStyle(element, name) {
   return getComputedStyle(element).getPropertyValue(name);
+}
+
+/** Size of the largest of some changes, but for single ones. */
+function findReach(changes) {
+  const sizes = changes.filter(Number.isFinite).map(Math.abs);
+  return sizes.length ? findPercentile(sizes, 99.5) : 0;
 }
