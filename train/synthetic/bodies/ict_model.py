@@ -85,7 +85,8 @@ def _read_arrays(path: Path) -> dict[str, np.ndarray]:
         ) from error
     except FileNotFoundError as error:
         raise InputError(
-            f"There is no file {path}; python -m tools.ict_facekit ICT-FaceKit -o {path} makes it."
+            f"{path} cannot be read as an .npz of arrays: it is not there; python -m "
+            f"tools.ict_facekit ICT-FaceKit -o {path} makes it."
         ) from error
     except (OSError, ValueError) as error:
         raise InputError(f"{path} cannot be read as an .npz of arrays; copy it again.") from error
