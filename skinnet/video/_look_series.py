@@ -1,5 +1,6 @@
 """Melanin through a shot: looks of the network that are spread over it, and pooled."""
 
+import math
 from typing import NamedTuple
 
 import numpy as np
@@ -144,7 +145,7 @@ def describe_constancy(shots: list[tuple[int, PooledMelanin]]) -> dict[str, obje
     return {
         "looks": looks,
         "spread": None if spread is None else round(spread, 4),
-        "standard_error": None if spread is None else round(spread / np.sqrt(sum(count)), 4),
+        "standard_error": None if spread is None else round(spread / math.sqrt(sum(count)), 4),
         "drift": None if longest is None else _measure_drift(longest),
     }
 

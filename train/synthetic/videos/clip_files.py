@@ -11,6 +11,9 @@ from jaxtyping import UInt8
 from skinnet.video._regions import NAMES
 from train.synthetic.videos.clip_renderer import ClipRenderer
 
+_BLOCK = 16
+"""Side of a block of H.264 in pixels."""
+
 Pixels = UInt8[np.ndarray, "height width 3"]
 
 
@@ -37,7 +40,7 @@ class ClipWriter:
             self._stream = self._container.add_stream("libx264", rate=30)
             self._stream.height, self._stream.width = pixels.shape[:2]
             self._stream.pix_fmt = "yuv420p"
-            self._stream.options = {"crf": str(self._quality), "preset": "veryfast"}
+            self._stream.options = _choose_options(self._quality, pixels.shape)
             self._stream.codec_context.time_base = Fraction(1, self._rate)
         frame = self._av.VideoFrame.from_ndarray(pixels, format="rgb24")
         frame.pts, frame.time_base = round(time * self._rate), Fraction(1, self._rate)
@@ -50,6 +53,15 @@ class ClipWriter:
             for packet in self._stream.encode():
                 self._container.mux(packet)
         self._container.close()
+
+
+def _choose_options(quality: int, shape: tuple[int, ...]) -> dict[str, str]:
+    """Options of x264 with which the same frames give the same file."""
+    options = {"crf": str(quality), "preset": "veryfast"}
+    if any(side % _BLOCK for side in shape[:2]):
+        # The vector code of x264 reads memory beyond the edge of such frames.
+        options["x264-params"] = "asm=0"
+    return options
 
 
 def write_clip(path: Path, renderer: ClipRenderer, quality: int = 18) -> None:
