@@ -33,14 +33,14 @@ from benchmarks.video_resources import measure_memory, measure_speed
 from skinnet.errors import InputError
 from skinnet.files._partial import write_together
 from skinnet.inference import Decomposer
+from skinnet.video._least_change import UNREADABLE
+from skinnet.video._readings import QUANTILE
 from skinnet.video._regions import FACE, NAMES
-from skinnet.video.tracker import UNREADABLE
 from train.synthetic.faces import SyntheticFaces
 from train.synthetic.videos.clips import Clips
 
 METHODS = ("skinnet", "pos", "chrom", "green")
 TONES = ("light", "medium", "dark")
-_FACTOR = 1.645
 _LEAST, _EARLY = 10, 60
 _ICT = str(SHARED / "models" / "ict_facekit.npz")
 
@@ -135,7 +135,7 @@ def measure_change(scores: Sequence[ClipScore]) -> Results:
 
 def _find_least(score: ClipScore) -> float:
     """Smallest relative change of the face that is told from none, from its first frames."""
-    return float(np.exp(_FACTOR * np.nanmedian(score.sd[:_EARLY, NAMES.index(FACE)])) - 1)
+    return float(np.exp(QUANTILE * np.nanmedian(score.sd[:_EARLY, NAMES.index(FACE)])) - 1)
 
 
 def _measure_region(scores: Sequence[ClipScore], index: int) -> Results:
@@ -179,7 +179,7 @@ def measure_strong(scores: Sequence[ClipScore]) -> Results | None:
 
 def _cover(scores: Iterable[ClipScore | StrongScore], regions: Iterable[int]) -> float | None:
     inside = [
-        np.abs(one.change - one.truth)[:, index][seen] <= _FACTOR * one.sd[:, index][seen]
+        np.abs(one.change - one.truth)[:, index][seen] <= QUANTILE * one.sd[:, index][seen]
         for one in scores
         for index in regions
         if (seen := np.isfinite(one.change[:, index]) & np.isfinite(one.truth[:, index])).any()

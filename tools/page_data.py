@@ -34,6 +34,7 @@ from skinnet.video import (
     _face_follower,
     _frame_colours,
     _frame_noise,
+    _least_change,
     _look_series,
     _map_frame,
     _noise,
@@ -80,9 +81,9 @@ _SENTENCES = {
     "noSkinInVideo": (_resting_maps, "No skin was found in the face of the video"),
     "compressed": (_video_frames, "bits a pixel"),
     "shotRefused": (tracker, "is not read"),
-    "unclear": (tracker, "cannot be told"),
-    "unreadable": (tracker, "cannot be read in this face"),
-    "whyUnclear": (tracker, "its skin is dark"),
+    "unclear": (_least_change, "cannot be told"),
+    "unreadable": (_least_change, "cannot be read in this face"),
+    "whyUnclear": (_least_change, "its skin is dark"),
     "disclaimer": (track, "This is no medical device"),
 }
 """Where each sentence is, and some of its words."""
@@ -144,6 +145,8 @@ _LIMITS: dict[str, tuple[ModuleType, tuple[str, ...]]] = {
     "REGION_OUTLINES": (face_regions, ("_WHOLE", "_CHEEKS", "_LEAST_AREA")),
     "REGIONS": (_regions, ("NAMES", "REGIONS", "FACE")),
     "STATES": (_readings, ("READ", "LOST", "HIDDEN")),
+    "INTERVAL": (_readings, ("QUANTILE",)),
+    "LEAST_CHANGE": (_least_change, ("_MUCH", "UNREADABLE")),
     "FOLLOWER": (
         _face_follower,
         ("_LEAST_ODDS", "_SEARCH", "_MARGIN", "_SMOOTH", "_CUT", "_THUMBNAIL"),
@@ -172,11 +175,11 @@ _LIMITS: dict[str, tuple[ModuleType, tuple[str, ...]]] = {
         ("_BLUR", "_LEAST_SEEN", "_NOISE_SD", "_GLOSS_SD", "_LIGHT_SD", "_STEP", "_LEAST_COLOUR"),
     ),
     "SHOT": (_shot, ("_MOST_BUFFERED", "_GLOSS_SD", "_GLOSS_BY_BEND", "_GLOSS_BY_SHADING")),
-    "TRACKER": (tracker, ("_BASELINE", "_LOOKS", "_FACTOR", "_MUCH", "UNREADABLE")),
+    "TRACKER": (tracker, ("_BASELINE", "_LOOKS")),
     "STILL": (_still_image, ("_BLOCK", "_MOST_BLOCK", "_MOST_MEAN", "_LEAST_SECONDS")),
     "FILES": (_video_frames, ("_LEAST_BITS",)),
     "CHANGES": (_map_frame, ("LARGEST_CHANGE", "_CHANGE")),
-    "COURSE": (_track_panel, ("_COLOURS", "_SHOWN", "_QUANTILE")),
+    "COURSE": (_track_panel, ("_COLOURS", "_SHOWN")),
     "TRACK_TABLE": (_track_files, ("_FIELDS", "_LEVEL")),
 }
 

@@ -10,6 +10,9 @@ Array = NDArray[np.float64]
 READ, LOST, HIDDEN = "read", "lost", "hidden"
 """States of a frame: it is read, no face was found, or too little skin is seen."""
 
+QUANTILE = 1.645
+"""Standard deviations from the middle of an interval of 90 % to its ends."""
+
 
 class Reading(NamedTuple):
     """Hemoglobin of the regions in one frame; NaN where a region cannot be read.

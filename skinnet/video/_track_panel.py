@@ -8,6 +8,7 @@ from PIL import Image, ImageDraw
 
 from skinnet.inference._tiles import BLANK, _load_font
 from skinnet.video._map_frame import colour_blood, colour_change
+from skinnet.video._readings import QUANTILE
 from skinnet.video._regions import NAMES
 from skinnet.video.track import Track
 
@@ -24,9 +25,6 @@ _COLOURS = {
     "chin": (150, 120, 40),
 }
 """The colours of Okabe and Ito, which all readers tell apart, and red for the lips."""
-
-_QUANTILE = 1.645
-"""Standard deviations from the middle of an interval of 90 % to its ends."""
 
 _SHOWN = 0.08
 """Least height of the plot: log changes on either side of 0."""
@@ -108,7 +106,7 @@ def _draw_course(panel: Image.Image, track: Track, top: int) -> None:
         return
     times, changes = rows[:, 0], rows[:, 1 : 1 + len(NAMES)]
     sds = rows[:, 1 + len(NAMES) :]
-    half = _QUANTILE * sds[:, 0]
+    half = QUANTILE * sds[:, 0]
     ends = np.stack([changes[:, 0] - half, changes[:, 0] + half])
     reach = max(_SHOWN, 1.1 * _find_reach(changes), 1.05 * _find_reach(ends))
     scale = _Axes(box, float(times[0]), max(float(times[-1]), float(times[0]) + 1e-3), reach)

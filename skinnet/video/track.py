@@ -10,6 +10,7 @@ from skinnet._version import __version__
 from skinnet.inference._decomposition.summary import round_all
 from skinnet.inference._uncertainty import summarise_mean
 from skinnet.video._events import Event
+from skinnet.video._readings import QUANTILE
 from skinnet.video._regions import NAMES
 
 _DISCLAIMER = (
@@ -128,7 +129,7 @@ def _describe_event(event: Event) -> dict[str, Any]:
         "log_ratio": event.log_ratio,
         "sd": event.sd,
         "factor": float(np.exp(event.log_ratio)),
-        "interval": [float(np.exp(event.log_ratio + way * 1.645 * event.sd)) for way in (-1, 1)],
+        "interval": [float(np.exp(event.log_ratio + way * QUANTILE * event.sd)) for way in (-1, 1)],
     }
     what = {"kind": event.kind, "region": event.region, "shot": event.shot}
     return {**what, **round_all(numbers)}

@@ -13,10 +13,11 @@ from skinnet.inference.decomposer import Decomposer
 from skinnet.video._events import Event, EventFinder
 from skinnet.video._face_follower import FaceChoice, FaceFollower, Followed
 from skinnet.video._frame_colours import FrameColours
+from skinnet.video._least_change import LeastChange
 from skinnet.video._look_series import PooledMelanin, describe_constancy
 from skinnet.video._pulse import PulseEstimate, PulseMeter, PulseSummary
 from skinnet.video._readings import LOST, READ, Reading, make_blank
-from skinnet.video._regions import FACE, NAMES
+from skinnet.video._regions import NAMES
 from skinnet.video._shot import Shot
 from skinnet.video._trace import Trace
 from skinnet.video.track import Track, _summarise_regions
@@ -26,10 +27,6 @@ _BASELINE, _LOOKS = (0.0, 3.0), 5
 
 _MOST_LOST = 2.0
 """Seconds without a face after which the pulse begins anew."""
-
-_FACTOR, _MUCH, UNREADABLE = 1.645, 0.12, 0.5
-"""Half of a 90 % interval in standard deviations, and the smallest relative changes that can be
-told from none from which on that is said, and from which on the face counts as unreadable."""
 
 _MOST_LISTED = 1000
 """Events and shots that are listed at most."""
@@ -97,7 +94,7 @@ class Tracker:
         self._rest: list[tuple[NDArray[np.float64], ...]] = []
         self._melanin: list[tuple[int, PooledMelanin]] = []
         self._trace = Trace(1 + 2 * len(NAMES))
-        self._noise, self._noisy = np.zeros(len(NAMES)), np.zeros(len(NAMES), int)
+        self._least = LeastChange()
         self._frames = dict.fromkeys((READ, LOST, "hidden"), 0)
         self._notes: dict[str, None] = {}
         self._shot: Shot | None = None
@@ -259,7 +256,7 @@ class Tracker:
         if reading.time - self._seen > _MOST_LOST:
             self._meter.clear()
         self._seen = reading.time
-        self._take_noise(reading)
+        self._least.add(reading)
         self._take_events(reading)
         if reading.direction is not None:
             found = self._meter.add(reading.time, reading.ratios, reading.direction)
@@ -267,35 +264,6 @@ class Tracker:
                 self.pulse = found
                 self._summary.add(found)
         self._keep_peak(reading)
-
-    def _take_noise(self, reading: Reading) -> None:
-        if reading.noise_sd is not None:
-            seen = np.isfinite(reading.noise_sd)
-            self._noise += np.where(seen, reading.noise_sd, 0.0) ** 2
-            self._noisy += seen
-
-    def _find_least_change(self) -> dict[str, float | None]:
-        """Smallest relative change of each region that a frame tells from none (90 %)."""
-        spread = np.sqrt(self._noise / np.maximum(self._noisy, 1))
-        least = np.exp(_FACTOR * spread) - 1
-        self._note_least(100 * float(least[NAMES.index(FACE)]))
-        return {
-            name: round(float(one), 4) if seen else None
-            for name, one, seen in zip(NAMES, least, self._noisy, strict=True)
-        }
-
-    def _note_least(self, percent: float) -> None:
-        why = "its skin is dark, its light changes, or the video is compressed strongly."
-        if percent > 100 * UNREADABLE:
-            self._note(
-                "Changes of blood cannot be read in this face: in single frames, only those above "
-                f"about {percent:.0f} % can be told from none. {why[0].upper()}{why[1:]}"
-            )
-        elif percent > 100 * _MUCH:
-            self._note(
-                f"In single frames, changes of blood below about {percent:.0f} % cannot be told "
-                f"from none in this face: {why}"
-            )
 
     def _take_events(self, reading: Reading) -> None:
         for index, finder in enumerate(self._finders):
@@ -325,7 +293,8 @@ class Tracker:
         lost = self._frames[LOST]
         if lost:
             self._note(f"{lost} of {sum(self._frames.values())} frames show no face.")
-        least = self._find_least_change()
+        for sentence in self._least.list_notes():
+            self._note(sentence)
         return Track(
             _summarise_regions(melanin, melanin_sd, info["melanin"].range[1]),
             _summarise_regions(rest[0, 2], rest[0, 3], info["hemoglobin"].range[1]),
@@ -337,7 +306,7 @@ class Tracker:
             tuple(self._notes),
             self._decomposer.encoder.describe(),
             describe_constancy(self._melanin),
-            least,
+            self._least.describe(),
             self._trace.rows(),
             self._portraits[0],
             self._peak,

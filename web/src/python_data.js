@@ -160,6 +160,15 @@ export const STATES = {
   HIDDEN: "hidden",
 };
 
+export const INTERVAL = {
+  QUANTILE: 1.645,
+};
+
+export const LEAST_CHANGE = {
+  MUCH: 0.12,
+  UNREADABLE: 0.5,
+};
+
 export const FOLLOWER = {
   LEAST_ODDS: 0.0,
   SEARCH: 0.25,
@@ -268,9 +277,6 @@ export const SHOT = {
 export const TRACKER = {
   BASELINE: [0.0, 3.0],
   LOOKS: 5,
-  FACTOR: 1.645,
-  MUCH: 0.12,
-  UNREADABLE: 0.5,
 };
 
 export const STILL = {
@@ -292,7 +298,6 @@ export const CHANGES = {
 export const COURSE = {
   COLOURS: {"face": [38, 38, 40], "forehead": [0, 114, 178], "left_cheek": [213, 94, 0], "right_cheek": [204, 121, 167], "nose": [0, 158, 115], "lips": [200, 30, 45], "chin": [150, 120, 40]},
   SHOWN: 0.08,
-  QUANTILE: 1.645,
 };
 
 export const TRACK_TABLE = {

@@ -77,18 +77,6 @@ def test_the_least_change_is_that_of_the_noise(decomposer: Decomposer) -> None:
     assert 0 < 1.2 * least[0] < least[1]
 
 
-@pytest.mark.parametrize(
-    ("percent", "sentence"),
-    [(5.0, ""), (20.0, "below about 20 %"), (90.0, "cannot be read in this")],
-)
-def test_a_large_least_change_is_said(
-    decomposer: Decomposer, percent: float, sentence: str
-) -> None:
-    tracker = Tracker(decomposer)
-    tracker._note_least(percent)
-    assert sentence in " ".join(tracker._notes) and bool(tracker._notes) == bool(sentence)
-
-
 def test_a_cut_begins_a_shot_and_a_lost_face_is_said(decomposer: Decomposer) -> None:
     photo = astronaut()
     wall = np.random.default_rng(0).integers(90, 110, (256, 256, 3)).astype(np.uint8)

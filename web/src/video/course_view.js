@@ -1,6 +1,6 @@
 /** The course of the regions over time, with the interval of the face. */
 
-import { COURSE, REGIONS } from "../python_data.js";
+import { COURSE, INTERVAL, REGIONS } from "../python_data.js";
 import { findPercentile } from "../statistics.js";
 import { formatChange } from "./change_scale.js";
 
@@ -28,7 +28,7 @@ export class CourseView {
     this.start = readings[0].time;
     this.end = Math.max(readings.at(-1).time, this.start + 1e-3);
     const ends = ({ change, changeSd }) =>
-      [-1, 1].map((way) => change[0] + way * COURSE.QUANTILE * changeSd[0]);
+      [-1, 1].map((way) => change[0] + way * INTERVAL.QUANTILE * changeSd[0]);
     this.reach = Math.max(
       COURSE.SHOWN,
       1.1 * findReach(readings.flatMap(({ change }) => [...change])),
@@ -119,7 +119,7 @@ export class CourseView {
     context.globalAlpha = 0.16;
     for (const run of this.listRuns(0)) {
       const side = (reading, way) => {
-        const change = reading.change[0] + way * COURSE.QUANTILE * reading.changeSd[0];
+        const change = reading.change[0] + way * INTERVAL.QUANTILE * reading.changeSd[0];
         return [this.x(reading.time), this.y(change)];
       };
       context.beginPath();

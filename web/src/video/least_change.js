@@ -1,6 +1,6 @@
-/** The smallest change that a single frame tells from none (`tracker.py`). */
+/** The smallest change that a single frame tells from none (`_least_change.py`). */
 
-import { REGIONS, SENTENCES, TRACKER } from "../python_data.js";
+import { INTERVAL, LEAST_CHANGE, REGIONS, SENTENCES } from "../python_data.js";
 import { capitalise, fill } from "../sentences.js";
 
 /** Relative changes by the names of the regions; null where a region is hidden. */
@@ -9,7 +9,7 @@ export function findLeastChange(readings) {
     const known = readings.map(({ noiseSd }) => noiseSd[at]).filter(Number.isFinite);
     if (!known.length) return [name, null];
     const variance = known.reduce((sum, sd) => sum + sd ** 2, 0) / known.length;
-    return [name, Number((Math.exp(TRACKER.FACTOR * Math.sqrt(variance)) - 1).toFixed(4))];
+    return [name, Number((Math.exp(INTERVAL.QUANTILE * Math.sqrt(variance)) - 1).toFixed(4))];
   });
   return Object.fromEntries(least);
 }
@@ -17,9 +17,9 @@ export function findLeastChange(readings) {
 /** Sentences on a face of which single frames tell little. */
 export function noteLeastChange(least) {
   const face = least[REGIONS.FACE];
-  if (face === null || face <= TRACKER.MUCH) return [];
+  if (face === null || face <= LEAST_CHANGE.MUCH) return [];
   const [percent, why] = [Math.round(100 * face), SENTENCES.whyUnclear];
-  if (face <= TRACKER.UNREADABLE) return [fill(SENTENCES.unclear, { percent, why })];
+  if (face <= LEAST_CHANGE.UNREADABLE) return [fill(SENTENCES.unclear, { percent, why })];
   const unreadable = SENTENCES.unreadable.replace("{value}{value}", capitalise(why));
   return [fill(unreadable, { percent })];
 }

@@ -1,11 +1,11 @@
 /** The table of regions: their change at the time that is shown, and their largest one. */
 
-import { COURSE, REGIONS } from "../python_data.js";
+import { INTERVAL, REGIONS } from "../python_data.js";
 import { findPercentile } from "../statistics.js";
 import { formatChange, formatChanges } from "./change_scale.js";
 import { toColour } from "./course_view.js";
 
-const { QUANTILE } = COURSE;
+const { QUANTILE } = INTERVAL;
 
 export class RegionTable {
   /** Calls `onShow(name, isShown)` where the line of a region is switched. */
