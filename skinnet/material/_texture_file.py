@@ -21,6 +21,11 @@ _STRIP = 64
 _MAX_SIDE = 65536
 _LINEAR_SPACES = frozenset({"linear", "lin_rec709", "lin_rec709_scene", "lin_srgb", "scene_linear"})
 _COLOURS = ("R", "G", "B")
+_FORMS = ("tiff:ColorSpace", "jpeg:ColorSpace")
+_OTHER_COLOURS = ("CMYK", "COLOR SEPARATED", "YCBCRK", "YCCK", "CIELAB", "ICCLAB", "ITULAB", "LOGL",
+                  "LOGLUV")  # fmt: skip
+"""Colours that OpenImageIO gives as red, green and blue although they are none, or only by a rule
+of thumb."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -150,6 +155,9 @@ def _check_form(source: Any, spec: Any, path: Path) -> None:
     if spec.depth > 1 or (source.seek_subimage(1, 0) and spec.format in ("half", "float")):
         raise InputError(f"{path} has several parts; save the albedo alone.")
     source.seek_subimage(0, 0)
+    for form in (str(spec.getattribute(name) or "") for name in _FORMS):
+        if form.upper() in _OTHER_COLOURS:
+            raise InputError(f"{path} stores its colours as {form}; convert it to RGB in sRGB.")
     if max(spec.width, spec.height) > _MAX_SIDE:
         raise InputError(
             f"{path} is {spec.width} x {spec.height}; the longest side is {_MAX_SIDE}. Cut it into "

@@ -6,6 +6,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 from albedo_textures import paint_skin, read_pixels, write_pixels, write_texture
+from PIL import Image
 
 from skinnet.cli import main
 
@@ -106,6 +107,13 @@ def _write_bad(folder: Path, kind: str) -> Path:
         path.write_bytes(path.read_bytes()[:2000])
     elif kind == "black":
         write_texture(path, 0 * skin, "uint8")
+    elif kind == "inks":
+        path = folder / "bad.tif"
+        pixels = np.rint(255 * skin).astype(np.uint8)
+        Image.fromarray(pixels).convert("CMYK").save(path)
+    elif kind == "Lab":
+        path = folder / "bad.tif"
+        Image.fromarray(np.full((32, 32, 3), (160, 140, 150), np.uint8), "LAB").save(path)
     elif kind == "text":
         path.write_text("no picture")
     return path
@@ -121,6 +129,8 @@ def _write_bad(folder: Path, kind: str) -> Path:
         ("more channels", "channels beside R, G, B and A: id"),
         ("cut short", "damaged or cut short"),
         ("black", "black or transparent everywhere"),
+        ("inks", "stores its colours as CMYK"),
+        ("Lab", "stores its colours as CIELAB"),
         ("text", "not a texture that can be read"),
         ("absent", "There is no file"),
     ],
